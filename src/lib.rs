@@ -1,0 +1,20 @@
+//! Conformant carries a flat antenna through a cage of three-dimensional Green coordinates, gap-free.
+//!
+//! A wearable antenna gets bent, crumpled and twisted. Here it is drawn flat, enclosed in a coarse cage, and the cage
+//! is deformed; the whole antenna follows, all parts through the same map, so that metal and substrate keep sharing
+//! their interfaces bit for bit.
+//!
+//! ```text
+//! PatchParams -antenna-> Plc (flat) --cage--> Cage (rest) --deform--> GreenWeights --posed cage--> Plc (deformed)
+//!                                                |                                   |
+//!                                                '------------ distortion <----------' rho, strain, compensation
+//! ```
+//!
+//! Every arrow is a pure function over checked values; nothing below [`pipeline`] knows of threads (beyond rayon
+//! inside itself), files or windows. Modules appear here in the order of that flow, and a module may only name the
+//! ones that `tests/architecture.rs` lists for it.
+
+pub mod task;
+pub mod units;
+
+pub mod geometry;
