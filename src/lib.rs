@@ -18,3 +18,6 @@ pub mod task;
 pub mod units;
 
 pub mod geometry;
+
+pub mod antenna;
+pub mod cage;
