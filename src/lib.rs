@@ -21,3 +21,5 @@ pub mod geometry;
 
 pub mod antenna;
 pub mod cage;
+
+pub mod deform;
