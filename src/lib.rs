@@ -23,3 +23,5 @@ pub mod antenna;
 pub mod cage;
 
 pub mod deform;
+
+pub mod distortion;
