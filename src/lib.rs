@@ -25,3 +25,5 @@ pub mod cage;
 pub mod deform;
 
 pub mod distortion;
+
+pub mod io;
