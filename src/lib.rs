@@ -27,3 +27,4 @@ pub mod deform;
 pub mod distortion;
 
 pub mod io;
+pub mod project;
