@@ -28,3 +28,5 @@ pub mod distortion;
 
 pub mod io;
 pub mod project;
+
+pub mod pipeline;

@@ -1,0 +1,104 @@
+//! Why a project cannot be computed.
+
+use crate::antenna::PatchError;
+use crate::cage::{CageError, PoseError, PresetError};
+use crate::deform::DeformError;
+use crate::distortion::CompensationError;
+use crate::task::Cancelled;
+
+/// Why a project could not be computed; the message says what to change.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PipelineError {
+    /// A dimension of the antenna is wrong.
+    #[error("antenna: {0}")]
+    Antenna(#[from] PatchError),
+    /// The cage cannot be built.
+    #[error("cage: {0}")]
+    Cage(#[from] CageError),
+    /// A preset's numbers are impossible.
+    #[error("preset {}: {source}", index + 1)]
+    Preset {
+        /// Place among the presets that are switched on, from 0.
+        index: usize,
+        /// What is wrong.
+        source: PresetError,
+    },
+    /// A hand edit names a vertex that the cage does not have.
+    #[error(
+        "hand edits name cage vertex {vertex}, but the cage has {n_handles}: clear the hand edits or restore the segments"
+    )]
+    HandEdit {
+        /// The vertex.
+        vertex: u32,
+        /// Vertices that can be moved.
+        n_handles: usize,
+    },
+    /// The posed cage is not usable.
+    #[error("cage: {0}")]
+    Pose(#[from] PoseError),
+    /// The splitting tolerance does not fit the antenna.
+    #[error(
+        "the tolerance is {value_mm} mm, but must be above 0 and at most {limit_mm:.4} mm: a third of the thinnest layer"
+    )]
+    Tolerance {
+        /// The tolerance, mm.
+        value_mm: f64,
+        /// Greatest allowed, mm.
+        limit_mm: f64,
+    },
+    /// Compensation has no result.
+    #[error("compensation: {0}")]
+    Compensation(CompensationError),
+    /// The map or the surface fails.
+    #[error(transparent)]
+    Deform(DeformError),
+    /// The map folds over.
+    #[error(
+        "the map folds the antenna over near x = {x_mm:.2} mm, y = {y_mm:.2} mm: bend less sharply there or use more cage segments"
+    )]
+    Folded {
+        /// x of the flat place, mm.
+        x_mm: f64,
+        /// y of the flat place, mm.
+        y_mm: f64,
+    },
+    /// The deformed surface crosses itself.
+    #[error(
+        "the deformed antenna crosses itself in {count} places, first {what} near ({x_mm:.2}, {y_mm:.2}, {z_mm:.2}) mm: bend less, or shorten the coaxial line"
+    )]
+    Crossing {
+        /// Number of crossing pairs of triangles.
+        count: usize,
+        /// The parts that meet there.
+        what: String,
+        /// x of the first place, mm.
+        x_mm: f64,
+        /// y of the first place, mm.
+        y_mm: f64,
+        /// z of the first place, mm.
+        z_mm: f64,
+    },
+    /// Called off.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+impl From<DeformError> for PipelineError {
+    fn from(error: DeformError) -> Self {
+        match error {
+            DeformError::Cancelled(cancelled) => Self::Cancelled(cancelled),
+            // A point outside the cage can only be a warped one: the antenna as drawn is inside.
+            outside @ DeformError::OutsideCage { .. } => Self::Compensation(outside.into()),
+            other => Self::Deform(other),
+        }
+    }
+}
+
+impl From<CompensationError> for PipelineError {
+    fn from(error: CompensationError) -> Self {
+        match error {
+            CompensationError::Cancelled(cancelled) => Self::Cancelled(cancelled),
+            other => Self::Compensation(other),
+        }
+    }
+}

@@ -1,0 +1,24 @@
+//! From a project to the deformed antenna, stage by stage, with a worker for the window.
+//!
+//! ```text
+//! Project -> Scene (cage, pose, cylinder) -> Compensated -> split surface -> guard -> figures, fields = Deformed
+//! ```
+//!
+//! [`deform`] does the whole job once. The window asks a [`Worker`](worker::Worker) instead, which answers the newest
+//! request only and, while the user drags, moves the last surface's vertices through the new pose without splitting or
+//! compensating anew ([`live`]). Where a pose is refused, [`retreat()`] finds the furthest valid project on the way to
+//! it.
+
+mod error;
+mod fields;
+pub mod live;
+mod retreat;
+mod scene;
+mod stages;
+pub mod worker;
+
+pub use error::PipelineError;
+pub use fields::Fields;
+pub use retreat::retreat;
+pub use scene::Scene;
+pub use stages::{Deformed, Stages, apply_cage, deform, exact_cylinder, flat, run};

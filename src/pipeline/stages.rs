@@ -1,0 +1,298 @@
+//! The stages of the whole job, and their result.
+
+use super::PipelineError;
+use super::fields::Fields;
+use super::scene::Scene;
+use crate::antenna::{PATCH, PatchParams, flat_complex};
+use crate::cage::Cage;
+use crate::deform::{
+    Carry, GreenCage, GreenWeights, Placement, Pose, SmoothMap, SplitSettings, SplitSurface, Warp, split,
+};
+use crate::distortion::{
+    Compensated, CompensationError, CompensationStep, Figures, IsometricProblem, Scope, Sheet, WlProblem,
+    compensate_isometric, compensate_wl, measure,
+};
+use crate::geometry::{DVec2, DVec3, Plc, RegionId, TriMesh, intersect};
+use crate::project::{CompensationMode, Project, ScopeSpec};
+use crate::task::Task;
+use crate::units::{from_mm, to_mm};
+use std::sync::Arc;
+use std::time::Instant;
+
+/// The deformed antenna with all that is shown and saved of it.
+#[derive(Clone, Debug)]
+pub struct Deformed {
+    /// The rest cage.
+    pub cage: Arc<Cage>,
+    /// Posed cage vertices, centers included, m (with the calibrated radius where that is on).
+    pub posed: Vec<DVec3>,
+    /// The split surface, flat; shared between replies until it is split anew.
+    pub flat: Arc<Plc>,
+    /// Deformed positions of the flat surface's vertices, m.
+    pub positions: Vec<DVec3>,
+    /// Local distortion.
+    pub fields: Fields,
+    /// Distortion figures.
+    pub figures: Figures,
+    /// The exact cylinder's own figures, where the antenna is bent onto one.
+    pub ideal: Option<Figures>,
+    /// Compensation, iteration by iteration; empty where there is none.
+    pub compensation: Vec<CompensationStep>,
+    /// False for a preview made while dragging.
+    pub is_final: bool,
+    /// Time spent, s.
+    pub seconds: f64,
+}
+
+impl Deformed {
+    /// The deformed surface complex.
+    #[must_use]
+    pub fn surface(&self) -> Plc {
+        self.flat.with_vertices(self.positions.clone())
+    }
+}
+
+/// Everything that a full run found, beyond its [`Deformed`]: what a live preview continues from.
+#[derive(Clone, Debug)]
+pub struct Stages {
+    /// The checked project.
+    pub scene: Scene,
+    /// Outcome of the compensation.
+    pub compensated: Compensated,
+    /// The antenna that was built: the one drawn, with the patch scaled where the patch alone is compensated.
+    pub built: PatchParams,
+    /// Rest points of the surface's vertices.
+    pub placement: Placement,
+    /// Flat places as drawn of the surface's vertices, against which distortion is measured, m.
+    pub reference: Vec<DVec3>,
+    /// The result.
+    pub deformed: Deformed,
+}
+
+/// Computes the deformed antenna of a project: cage, compensation, splitting, guard and figures.
+///
+/// # Errors
+/// [`PipelineError`] naming what to change; the project is not touched.
+pub fn deform(project: &Project, task: &Task) -> Result<Deformed, PipelineError> {
+    run(project, task).map(|stages| stages.deformed)
+}
+
+/// [`deform`] with all that it found on the way.
+///
+/// # Errors
+/// As [`deform`].
+pub fn run(project: &Project, task: &Task) -> Result<Stages, PipelineError> {
+    let started = Instant::now();
+    let scene = Scene::new(project)?;
+    scene.checked_pose()?;
+    let compensated = compensate(project, &scene, task)?;
+    let posed = compensated.map.pose().vertices().to_vec();
+    crate::cage::check_pose(&scene.cage, &posed)?;
+    let built = scaled(&scene.params, compensated.patch_scale);
+    let sheet = |scale| Sheet { scale, warp: &compensated.warp, map: &compensated.map };
+    check_folds(&sheet(DVec2::ONE), &scene.params)?;
+    let carry = Carry::new(&compensated.map, &compensated.warp, Scene::feed(&built))?;
+    let surface = guarded_split(&built, &carry, project.settings.tolerance_mm, task)?;
+    let placement = carry.place(&surface.flat.vertices)?;
+    let reference = reference(&surface, &placement, &compensated);
+    task.check()?;
+    let orders = project.settings.fit_orders;
+    let cylinder = scene.cylinder();
+    let cylinder = cylinder.as_ref();
+    let patch = sheet(compensated.patch_scale);
+    let figures = measure(&scene.params, &patch, &sheet(DVec2::ONE), cylinder, orders)?;
+    let ideal = cylinder.map(|c| measure(&scene.params, c, c, Some(c), orders)).transpose()?;
+    let deformed = Deformed {
+        cage: Arc::clone(&scene.cage),
+        posed,
+        fields: Fields::new(&surface.flat, &reference, &surface.positions),
+        flat: Arc::new(surface.flat),
+        positions: surface.positions,
+        figures,
+        ideal,
+        compensation: compensated.steps.clone(),
+        is_final: true,
+        seconds: started.elapsed().as_secs_f64(),
+    };
+    Ok(Stages { scene, compensated, built, placement, reference, deformed })
+}
+
+/// The flat surface complex of a project, as drawn.
+///
+/// # Errors
+/// [`PipelineError::Antenna`].
+pub fn flat(project: &Project) -> Result<Plc, PipelineError> {
+    Ok(flat_complex(&project.antenna.to_params())?)
+}
+
+/// The exact cylinder's surface complex for a project bent onto one cylinder (`None` for other shapes).
+///
+/// # Errors
+/// As [`deform`].
+pub fn exact_cylinder(project: &Project, task: &Task) -> Result<Option<Plc>, PipelineError> {
+    let scene = Scene::new(project)?;
+    let Some(cylinder) = scene.cylinder() else { return Ok(None) };
+    let half = DVec2::new(scene.params.ground_width, scene.params.ground_length) / 2.0;
+    let identity = Warp::identity(half);
+    let carry = Carry::new(&cylinder, &identity, Scene::feed(&scene.params))?;
+    let surface = guarded_split(&scene.params, &carry, project.settings.tolerance_mm, task)?;
+    Ok(Some(surface.flat.with_vertices(surface.positions)))
+}
+
+/// Carries points through any closed triangle cage; numbers as they stand, no unit.
+///
+/// Returns the carried points and the weights they were carried with.
+///
+/// # Errors
+/// [`PipelineError::Deform`] for an unusable cage or pose, or a point outside the cage.
+pub fn apply_cage(
+    rest: TriMesh,
+    posed: &[DVec3],
+    points: &[DVec3],
+    task: &Task,
+) -> Result<(Vec<DVec3>, GreenWeights), PipelineError> {
+    // Whoever gives points to carry has drawn them: outside is their place, not a compensation's.
+    let cage = GreenCage::new(rest).map_err(PipelineError::Deform)?;
+    let pose = Pose::new(&cage, posed).map_err(PipelineError::Deform)?;
+    let weights = cage.weights(points, task).map_err(PipelineError::Deform)?;
+    Ok((weights.apply(&pose), weights))
+}
+
+/// Runs the compensation that the project asks for.
+fn compensate(project: &Project, scene: &Scene, task: &Task) -> Result<Compensated, PipelineError> {
+    let settings = &project.settings;
+    match settings.compensation {
+        CompensationMode::None => {
+            let half = DVec2::new(scene.params.ground_width, scene.params.ground_length) / 2.0;
+            let map = scene.map(&scene.posed(1.0)?)?;
+            let warp = Warp::identity(half);
+            Ok(Compensated { warp, patch_scale: DVec2::ONE, radius_factor: 1.0, map, steps: Vec::new() })
+        }
+        CompensationMode::Wl => {
+            let map = scene.map(&scene.posed(1.0)?)?;
+            let scope = if settings.scope == ScopeSpec::Whole { Scope::Whole } else { Scope::Patch };
+            let problem = WlProblem { params: &scene.params, map: &map, scope, orders: settings.fit_orders };
+            Ok(compensate_wl(&problem, task)?)
+        }
+        CompensationMode::Isometric => Ok(compensate_metric(scene, task)?),
+    }
+}
+
+/// Isometric compensation. Hand edits are laid onto the bend as calibrated without them, so that the first edit does
+/// not let the bend spring back.
+fn compensate_metric(scene: &Scene, task: &Task) -> Result<Compensated, CompensationError> {
+    let solve = |scene: &Scene, factor: f64| {
+        let map_at = |f: f64| scene.map_at(factor * f);
+        let problem = IsometricProblem {
+            params: &scene.params,
+            degrees: scene.warp_degrees(),
+            cylinder: scene.cylinder(),
+            map_at: &map_at,
+        };
+        let solved = compensate_isometric(&problem, task)?;
+        Ok(Compensated { radius_factor: factor * solved.radius_factor, ..solved })
+    };
+    if scene.bend.is_none() || scene.edits.is_empty() {
+        return solve(scene, 1.0);
+    }
+    let plain = Scene { edits: Vec::new(), ..scene.clone() };
+    solve(scene, solve(&plain, 1.0)?.radius_factor)
+}
+
+/// The antenna with its patch and feed place scaled.
+fn scaled(params: &PatchParams, scale: DVec2) -> PatchParams {
+    PatchParams {
+        width: params.width * scale.x,
+        length: params.length * scale.y,
+        inset: params.inset * scale.y,
+        feed_offset: params.feed_offset * scale.x,
+        ..params.clone()
+    }
+}
+
+/// Samples across the antenna where the map must not fold.
+const FOLD_SAMPLES: [usize; 3] = [33, 33, 3];
+
+/// Refuses a map that turns a sample of the antenna inside out: needed for a valid surface, not sufficient.
+fn check_folds(sheet: &impl SmoothMap, params: &PatchParams) -> Result<(), PipelineError> {
+    let (lo, hi) = params.bounds();
+    let [nx, ny, nz] = FOLD_SAMPLES;
+    let at = |i: usize, n: usize| i as f64 / (n - 1) as f64;
+    let points: Vec<DVec3> = (0..nx * ny * nz)
+        .map(|s| lo + (hi - lo) * DVec3::new(at(s / (ny * nz), nx), at(s / nz % ny, ny), at(s % nz, nz)))
+        .collect();
+    for (point, (_, jacobian)) in points.iter().zip(sheet.jacobians(&points)?) {
+        if jacobian.determinant() <= 0.0 {
+            return Err(PipelineError::Folded { x_mm: to_mm(point.x), y_mm: to_mm(point.y) });
+        }
+    }
+    Ok(())
+}
+
+/// Finer tolerances tried when the split surface crosses itself although the map does not fold.
+const RETRIES: usize = 2;
+
+/// Splits the antenna's surface, and finer where it crosses itself.
+fn guarded_split<M: SmoothMap>(
+    built: &PatchParams,
+    carry: &Carry<'_, M>,
+    tolerance_mm: f64,
+    task: &Task,
+) -> Result<SplitSurface, PipelineError> {
+    let flat = flat_complex(built)?;
+    let mut tolerance = from_mm(tolerance_mm);
+    for attempt in 0..=RETRIES {
+        let phase = task.phase("splitting edges", 0);
+        let surface = split(flat.clone(), |p| carry.positions(p), SplitSettings::with_tolerance(tolerance), task)?;
+        phase.advance(surface.positions.len());
+        let faces: Vec<_> = surface.flat.facets.iter().map(|f| f.vertices).collect();
+        let crossings = intersect::crossings(&surface.positions, &faces);
+        let Some(first) = crossings.first() else { return Ok(surface) };
+        if attempt == RETRIES {
+            return Err(crossing_error(&surface, *first, crossings.len()));
+        }
+        tolerance /= 2.0;
+    }
+    unreachable!("the last attempt returns")
+}
+
+fn crossing_error(surface: &SplitSurface, first: intersect::Crossing, count: usize) -> PipelineError {
+    let posed = surface.flat.with_vertices(surface.positions.clone());
+    let place = posed.corners(first.first.index()).iter().sum::<DVec3>() / 3.0;
+    let part = |f: usize| {
+        let facet = &surface.flat.facets[f];
+        let region = if facet.back == RegionId::AIR { facet.front } else { facet.back };
+        surface.flat.regions[region.index()].name.clone()
+    };
+    PipelineError::Crossing {
+        count,
+        what: format!("{} with {}", part(first.first.index()), part(first.second.index())),
+        x_mm: to_mm(place.x),
+        y_mm: to_mm(place.y),
+        z_mm: to_mm(place.z),
+    }
+}
+
+/// Where each vertex of the surface sits on the antenna as drawn: its rest point without the compensation. The shift
+/// that keeps the feed round slides points along the sheet; it is no distortion and does not count.
+fn reference(surface: &SplitSurface, placement: &Placement, compensated: &Compensated) -> Vec<DVec3> {
+    let patch = surface.flat.region(PATCH);
+    let mut on_patch = vec![false; surface.positions.len()];
+    for facet in surface.flat.facets.iter().filter(|f| Some(f.back) == patch || Some(f.front) == patch) {
+        facet.vertices.iter().for_each(|v| on_patch[v.index()] = true);
+    }
+    let unscale = compensated.patch_scale.recip();
+    surface
+        .flat
+        .vertices
+        .iter()
+        .enumerate()
+        .map(|(v, flat)| {
+            if placement.sweep[v] > 0.0 {
+                return *flat;
+            }
+            let drawn = compensated.warp.inverse(placement.rest[v]);
+            if on_patch[v] { (drawn.truncate() * unscale).extend(drawn.z) } else { drawn }
+        })
+        .collect()
+}
