@@ -28,5 +28,7 @@ pub mod distortion;
 
 pub mod io;
 pub mod project;
+#[cfg(feature = "gui")]
+pub mod render;
 
 pub mod pipeline;
