@@ -32,3 +32,5 @@ pub mod project;
 pub mod render;
 
 pub mod pipeline;
+
+pub mod cli;

@@ -1,0 +1,302 @@
+//! The arguments: what can be typed, and nothing of what it does.
+
+use crate::project::{BendPlane, CompensationMode, RuleSpec, ScopeSpec};
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+/// A cage editor for antennas: bends a flat patch antenna with Green coordinates, gap-free.
+#[derive(Debug, Parser)]
+#[command(name = "conformant", version, args_conflicts_with_subcommands = true, disable_help_subcommand = true)]
+#[command(after_help = "Without a command the editor opens. Exit codes: 0 done, 1 failed, 2 wrong usage, \
+    3 `verify` found faults, 130 cancelled.")]
+pub(super) struct Arguments {
+    #[command(subcommand)]
+    pub(super) command: Option<Command>,
+    /// Project to open in the editor
+    pub(super) file: Option<PathBuf>,
+}
+
+/// What to do without the window.
+#[derive(Debug, Subcommand)]
+#[allow(clippy::large_enum_variant, reason = "made once")]
+pub enum Command {
+    /// Write a new project file
+    New(NewArgs),
+    /// Compute the deformed antenna, print its figures and export it with certificate
+    Deform(DeformArgs),
+    /// Compensate and print the iterations
+    Compensate(CompensateArgs),
+    /// Export geometry with certificate
+    Export(ExportArgs),
+    /// Prove an export's certificate anew from its files
+    Verify(VerifyArgs),
+    /// Compute the surface error over bend radius for many cages, as tables and plots
+    Study(StudyArgs),
+    /// Say what a project holds and whether it can be posed
+    Info(InfoArgs),
+    /// Carry points through any closed triangle cage, numbers as they stand
+    Apply(ApplyArgs),
+}
+
+/// Arguments of `new`.
+#[derive(Debug, Args)]
+#[command(allow_negative_numbers = true)]
+pub struct NewArgs {
+    /// Project file to write
+    pub(super) file: PathBuf,
+    /// Bend in the H-plane (x curves) or the E-plane (y curves)
+    #[arg(long, value_name = "PLANE")]
+    pub(super) bend: Option<Plane>,
+    /// Bend radius of the patch's bottom plane, mm; negative bends the other way [default: 10, section shapes 20]
+    #[arg(long, value_name = "MM")]
+    pub(super) radius: Option<f64>,
+    /// How the stations of a bent cage are placed
+    #[arg(long, default_value = "tangent")]
+    pub(super) rule: Rule,
+    /// Height of the plane whose length a bend keeps, mm
+    #[arg(long, value_name = "MM", default_value_t = 0.0)]
+    pub(super) kept_plane: f64,
+    /// Distance from the antenna to the cage, mm: one number, or x,y,z
+    #[arg(long, value_name = "MM", value_delimiter = ',', num_args = 1)]
+    pub(super) padding: Vec<f64>,
+    /// Segments of the cage: x,y, or one number, which for a plain bend is along the bend
+    #[arg(long, value_name = "N", value_delimiter = ',', num_args = 1)]
+    pub(super) segments: Vec<usize>,
+    /// Another shape, on top of the bend if there is one
+    #[arg(long, value_name = "SHAPE")]
+    pub(super) preset: Option<Shape>,
+    /// Amplitude of the shape, mm [default: 10, crumple 1]
+    #[arg(long, value_name = "MM")]
+    pub(super) amplitude: Option<f64>,
+    /// Rate of the twist, degrees per mm along y
+    #[arg(long, value_name = "DEG", default_value_t = 0.573)]
+    pub(super) rate: f64,
+    /// Waves of the crumple over the cage's extent along x,y
+    #[arg(long, value_name = "N", value_delimiter = ',', num_args = 1, default_value = "2,0")]
+    pub(super) waves: Vec<f64>,
+    /// Size the patch for this frequency, GHz (a first guess)
+    #[arg(long, value_name = "GHZ")]
+    pub(super) freq: Option<f64>,
+    /// Substrate height, mm
+    #[arg(long, value_name = "MM")]
+    pub(super) height: Option<f64>,
+    /// Relative permittivity of the substrate
+    #[arg(long, value_name = "NUMBER")]
+    pub(super) eps_r: Option<f64>,
+    /// Loss tangent of the substrate
+    #[arg(long, value_name = "NUMBER")]
+    pub(super) tan_delta: Option<f64>,
+    /// Replace the file if it exists
+    #[arg(long)]
+    pub(super) force: bool,
+}
+
+/// Arguments of `deform`.
+#[derive(Debug, Args)]
+pub struct DeformArgs {
+    /// Project file
+    pub(super) file: PathBuf,
+    /// Compensation, instead of the project's own
+    #[arg(long, value_name = "MODE")]
+    pub(super) compensate: Option<Mode>,
+    /// What WL scales, instead of the project's own choice
+    #[arg(long)]
+    pub(super) scope: Option<ScopeChoice>,
+    /// Export the geometry with certificate into this folder
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: Option<PathBuf>,
+    /// Print JSON
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+/// Arguments of `compensate`.
+#[derive(Debug, Args)]
+pub struct CompensateArgs {
+    /// Project file
+    pub(super) file: PathBuf,
+    /// Compensation, instead of the project's own
+    #[arg(long)]
+    pub(super) mode: Option<Mode>,
+    /// What WL scales, instead of the project's own choice
+    #[arg(long)]
+    pub(super) scope: Option<ScopeChoice>,
+    /// Degrees of the polynomials that measure width and length
+    #[arg(long, value_names = ["P", "Q"], num_args = 2)]
+    pub(super) orders: Option<Vec<usize>>,
+    /// Print JSON
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+/// Arguments of `export`.
+#[derive(Debug, Args)]
+pub struct ExportArgs {
+    /// Project file
+    pub(super) file: PathBuf,
+    /// Folder to write into; made where it is missing
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: PathBuf,
+    /// Which geometry
+    #[arg(long, default_value = "deformed")]
+    pub(super) shape: ExportShape,
+    /// Formats; STL is always written, since the certificate rests on it
+    #[arg(long, value_delimiter = ',', default_value = "stl,obj,gltf")]
+    pub(super) format: Vec<Format>,
+    /// Print JSON
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+/// Arguments of `verify`.
+#[derive(Debug, Args)]
+pub struct VerifyArgs {
+    /// Folder written by an export
+    pub(super) dir: PathBuf,
+    /// Print JSON
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+/// Arguments of `study`.
+#[derive(Debug, Args)]
+pub struct StudyArgs {
+    /// Folder to write into; made where it is missing
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: PathBuf,
+    /// Print JSON
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+/// Arguments of `info`.
+#[derive(Debug, Args)]
+pub struct InfoArgs {
+    /// Project file
+    pub(super) file: PathBuf,
+    /// Print JSON
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+/// Arguments of `apply`.
+#[derive(Debug, Args)]
+pub struct ApplyArgs {
+    /// Closed triangle cage at rest, OBJ
+    #[arg(long, value_name = "OBJ")]
+    pub(super) cage: PathBuf,
+    /// The same cage posed: same vertices and faces in the same order, OBJ
+    #[arg(long, value_name = "OBJ")]
+    pub(super) posed: PathBuf,
+    /// Points to carry: CSV without header, x,y,z
+    #[arg(long, value_name = "CSV")]
+    pub(super) points: PathBuf,
+    /// Where the carried points go: CSV without header, x,y,z
+    #[arg(long, value_name = "CSV")]
+    pub(super) out: PathBuf,
+    /// Where the weights go: CSV without header, per point phi of each vertex, then psi of each face
+    #[arg(long, value_name = "CSV")]
+    pub(super) weights: Option<PathBuf>,
+}
+
+/// Plane of a bend.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(super) enum Plane {
+    H,
+    E,
+}
+
+/// Rule of a bend.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(super) enum Rule {
+    /// Segments tangent to the cylinder
+    Tangent,
+    /// Vertices on the cylinder
+    Arc,
+}
+
+/// A shape other than a bend.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Shape {
+    Convex,
+    Concave,
+    Saddle,
+    Twist,
+    Crumple,
+}
+
+/// Which compensation.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(super) enum Mode {
+    /// The antenna as drawn
+    None,
+    /// Width-and-length scaling
+    Wl,
+    /// Metric pre-warp, radius calibration and thickness
+    Isometric,
+}
+
+/// What WL scales.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(super) enum ScopeChoice {
+    /// The whole flat antenna
+    Whole,
+    /// The patch and its feed place alone
+    Patch,
+}
+
+/// Which geometry is exported.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum ExportShape {
+    /// Carried through the posed cage, compensated as the project says
+    Deformed,
+    /// As drawn
+    Flat,
+    /// On the exact cylinder of the project's bend
+    Cylinder,
+}
+
+/// A file format.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Format {
+    Stl,
+    Obj,
+    Gltf,
+}
+
+impl From<Plane> for BendPlane {
+    fn from(plane: Plane) -> Self {
+        match plane {
+            Plane::H => Self::H,
+            Plane::E => Self::E,
+        }
+    }
+}
+
+impl From<Rule> for RuleSpec {
+    fn from(rule: Rule) -> Self {
+        match rule {
+            Rule::Tangent => Self::Tangent,
+            Rule::Arc => Self::Arc,
+        }
+    }
+}
+
+impl From<Mode> for CompensationMode {
+    fn from(mode: Mode) -> Self {
+        match mode {
+            Mode::None => Self::None,
+            Mode::Wl => Self::Wl,
+            Mode::Isometric => Self::Isometric,
+        }
+    }
+}
+
+impl From<ScopeChoice> for ScopeSpec {
+    fn from(scope: ScopeChoice) -> Self {
+        match scope {
+            ScopeChoice::Whole => Self::Whole,
+            ScopeChoice::Patch => Self::Patch,
+        }
+    }
+}

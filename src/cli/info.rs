@@ -1,0 +1,90 @@
+//! `info`: what a project holds, and whether it can be posed.
+
+use super::args::InfoArgs;
+use super::report::table;
+use crate::pipeline::Scene;
+use crate::project::{MaterialSpec, PresetSpec, Project, file};
+use anyhow::Result;
+use serde::Serialize;
+
+/// What `info --json` prints.
+#[derive(Debug, Serialize)]
+struct Report<'a> {
+    /// The project as in its file.
+    project: &'a Project,
+    cage_vertices: usize,
+    cage_faces: usize,
+    /// Why the cage cannot be posed; null if it can.
+    refused: Option<String>,
+}
+
+pub(super) fn run(args: &InfoArgs) -> Result<()> {
+    let project = file::read(&args.file)?;
+    let cage = project.rest_cage()?;
+    let refused = Scene::new(&project).and_then(|scene| scene.checked_pose()).err().map(|error| error.to_string());
+    let (cage_vertices, cage_faces) = (cage.mesh.vertices.len(), cage.mesh.faces.len());
+    let report = Report { project: &project, cage_vertices, cage_faces, refused };
+    if args.json {
+        return super::print(&serde_json::to_string_pretty(&report)?);
+    }
+    super::print(&report.text())
+}
+
+impl Report<'_> {
+    fn text(&self) -> String {
+        let (antenna, cage, settings) = (&self.project.antenna, self.project.cage, self.project.settings);
+        let material = |m: MaterialSpec| format!("eps_r {}, tan delta {}", m.eps_r, m.tan_delta);
+        let mut rows: Vec<(String, String)> = Vec::new();
+        let mut row = |name: &str, text: String| rows.push((name.to_owned(), text));
+        row(
+            "patch",
+            format!("W {} x L {} mm, {} mm thick", antenna.width_mm, antenna.length_mm, antenna.patch_thickness_mm),
+        );
+        row("substrate", format!("h {} mm, {}", antenna.height_mm, material(antenna.substrate)));
+        let (wide, long) = (antenna.ground_width_mm, antenna.ground_length_mm);
+        row("ground", format!("{wide} x {long} mm, {} mm thick", antenna.ground_thickness_mm));
+        row("feed", format!("inset {} mm, offset {} mm", antenna.inset_mm, antenna.feed_offset_mm));
+        let (pin, outer) = (antenna.pin_radius_mm, antenna.coax_radius_mm);
+        row(
+            "coax",
+            format!("pin {pin} mm, outer {outer} mm, {} mm long, {}", antenna.coax_length_mm, material(antenna.sheath)),
+        );
+        let ([dx, dy, dz], [nx, ny]) = (cage.padding_mm, cage.segments);
+        let counts = format!("{} vertices, {} faces", self.cage_vertices, self.cage_faces);
+        row("cage", format!("padding {dx}, {dy}, {dz} mm, {nx} x {ny} segments: {counts}"));
+        for (i, entry) in self.project.presets.iter().enumerate() {
+            let off = if entry.enabled { "" } else { " (off)" };
+            row(&format!("preset {}", i + 1), preset(entry.preset) + off);
+        }
+        row("hand edits", format!("{} vertices", self.project.hand_edits.len()));
+        let mode = format!("{:?}", settings.compensation).to_lowercase();
+        let scope = format!("{:?}", settings.scope).to_lowercase();
+        let [p, q] = settings.fit_orders;
+        row("compensation", format!("{mode}, scope {scope}, fit orders ({p}, {q})"));
+        row("tolerance", format!("{} mm", settings.tolerance_mm));
+        row("pose", self.refused.clone().map_or_else(|| "can be posed".to_owned(), |why| format!("refused: {why}")));
+        // One padded column and free text: a table would push the text to the right.
+        let names: Vec<_> = rows.iter().map(|(name, _)| vec![name.clone()]).collect();
+        let width = table(&names).lines().map(|l| l.chars().count()).max().unwrap_or(0);
+        rows.iter().map(|(name, text)| format!("{name:<width$}  {text}")).collect::<Vec<_>>().join("\n")
+    }
+}
+
+/// A preset in words.
+pub(super) fn preset(preset: PresetSpec) -> String {
+    match preset {
+        PresetSpec::Bend { plane, radius_mm, rule, kept_plane_mm } => {
+            let rule = format!("{rule:?}").to_lowercase();
+            format!("bend in the {plane:?}-plane, R {radius_mm} mm, {rule} rule, kept plane z = {kept_plane_mm} mm")
+        }
+        PresetSpec::Convex { radius_mm, amplitude_mm } => format!("convex, R {radius_mm} mm, A {amplitude_mm} mm"),
+        PresetSpec::Concave { radius_mm, amplitude_mm } => format!("concave, R {radius_mm} mm, A {amplitude_mm} mm"),
+        PresetSpec::Saddle { radius_mm, amplitude_mm } => format!("saddle, R {radius_mm} mm, A {amplitude_mm} mm"),
+        PresetSpec::Twist { amplitude_mm, rate_deg_per_mm } => {
+            format!("twist, A {amplitude_mm} mm, {rate_deg_per_mm} degrees per mm")
+        }
+        PresetSpec::Crumple { amplitude_mm, waves: [x, y], phase_deg } => {
+            format!("crumple, A {amplitude_mm} mm, {x} waves along x, {y} along y, phase {phase_deg} degrees")
+        }
+    }
+}

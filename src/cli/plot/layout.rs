@@ -1,0 +1,168 @@
+//! Where everything stands in a figure: title, panels with axes and grid, legend.
+
+use super::axes::Spread;
+use super::canvas::{Anchor, Canvas, Font};
+use super::{Figure, Panel, Series, Style};
+use anyhow::Result;
+use plotters::prelude::DrawingBackend;
+
+const PANEL: (f64, f64) = (390.0, 270.0);
+const LEFT: f64 = 62.0;
+const GAP: f64 = 26.0;
+const TOP: f64 = 46.0;
+const PANEL_TITLE: f64 = 24.0;
+const BETWEEN_ROWS: f64 = 34.0;
+const BOTTOM: f64 = 54.0;
+const LEGEND: f64 = 172.0;
+const LEGEND_ROW: f64 = 20.0;
+
+const INK: [u8; 3] = [33, 37, 41];
+const SOFT: [u8; 3] = [90, 96, 102];
+const GRID_LINE: [u8; 3] = [228, 231, 234];
+const ZERO_LINE: [u8; 3] = [150, 155, 160];
+const PAPER: [u8; 3] = [255, 255, 255];
+
+const TITLE: Font = Font { size: 16.0, bold: true };
+const HEADING: Font = Font { size: 13.0, bold: true };
+const LABEL: Font = Font { size: 13.0, bold: false };
+const TICK: Font = Font { size: 12.0, bold: false };
+
+/// Width and height of the figure.
+pub(super) fn size(figure: &Figure) -> (u32, u32) {
+    let rows = figure.panels.len().div_ceil(figure.columns);
+    let width = LEFT + figure.columns as f64 * (PANEL.0 + GAP) + LEGEND;
+    let height = TOP + rows as f64 * (PANEL.1 + PANEL_TITLE + BETWEEN_ROWS) - BETWEEN_ROWS + BOTTOM;
+    (width as u32, height as u32)
+}
+
+/// Draws the whole figure.
+pub(super) fn draw<B: DrawingBackend>(figure: &Figure, canvas: &Canvas<'_, B>) -> Result<()> {
+    canvas.fill(PAPER)?;
+    canvas.text(&figure.title, (LEFT, 14.0), TITLE, Anchor::Corner, INK)?;
+    let all = || figure.panels.iter().flat_map(|p| &p.series);
+    let x = figure.x.spread(all().flat_map(|s| s.points.iter().map(|p| p.x)));
+    for (row, panels) in figure.panels.chunks(figure.columns).enumerate() {
+        let values = panels.iter().flat_map(|p| &p.series).flat_map(Series::values).map(|(_, y)| y);
+        let y = panels[0].y.spread(values);
+        for (column, panel) in panels.iter().enumerate() {
+            let frame = Frame {
+                left: LEFT + column as f64 * (PANEL.0 + GAP),
+                top: TOP + PANEL_TITLE + row as f64 * (PANEL.1 + PANEL_TITLE + BETWEEN_ROWS),
+                x: &x,
+                y: &y,
+            };
+            frame.grid(canvas, column == 0)?;
+            frame.series(canvas, panel)?;
+            frame.labels(canvas, panel, column == 0)?;
+            if figure.panels.len() - (row * figure.columns + column) <= figure.columns {
+                let middle = (frame.left + PANEL.0 / 2.0, frame.bottom() + 26.0);
+                canvas.text(&figure.x.label, middle, LABEL, Anchor::Below, INK)?;
+            }
+        }
+    }
+    legend(figure, canvas)
+}
+
+fn legend<B: DrawingBackend>(figure: &Figure, canvas: &Canvas<'_, B>) -> Result<()> {
+    let left = LEFT + figure.columns as f64 * (PANEL.0 + GAP) + 2.0;
+    let mut y = TOP + PANEL_TITLE + 8.0;
+    canvas.text(&figure.legend, (left, y), HEADING, Anchor::Left, INK)?;
+    let mut named: Vec<&str> = Vec::new();
+    let all = || figure.panels.iter().flat_map(|p| &p.series);
+    // References stand last, whatever panel a line first appears in.
+    for series in all().filter(|s| s.style == Style::Marked).chain(all().filter(|s| s.style == Style::Dashed)) {
+        if named.contains(&series.name.as_str()) {
+            continue;
+        }
+        named.push(&series.name);
+        y += LEGEND_ROW;
+        series.stroke(canvas, &[(left, y), (left + 26.0, y)])?;
+        if series.style == Style::Marked {
+            canvas.mark((left + 13.0, y), MARK, series.color)?;
+        }
+        canvas.text(&series.name, (left + 34.0, y), TICK, Anchor::Left, INK)?;
+    }
+    Ok(())
+}
+
+/// Radius of the mark at a point.
+const MARK: f64 = 2.4;
+/// Width of a line.
+const STROKE: f64 = 1.6;
+
+impl Series {
+    /// The points that have a value.
+    fn values(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.points.iter().filter_map(|p| p.y.as_ref().ok().map(|&y| (p.x, y)))
+    }
+
+    fn stroke<B: DrawingBackend>(&self, canvas: &Canvas<'_, B>, path: &[(f64, f64)]) -> Result<()> {
+        match self.style {
+            Style::Marked => canvas.line(path, self.color, STROKE),
+            Style::Dashed => canvas.dashed(path, self.color, STROKE),
+        }
+    }
+}
+
+/// One panel's place and ranges.
+struct Frame<'a> {
+    left: f64,
+    top: f64,
+    x: &'a Spread,
+    y: &'a Spread,
+}
+
+impl Frame<'_> {
+    fn bottom(&self) -> f64 {
+        self.top + PANEL.1
+    }
+
+    fn at(&self, (x, y): (f64, f64)) -> (f64, f64) {
+        (self.left + PANEL.0 * self.x.place(x), self.bottom() - PANEL.1 * self.y.place(y))
+    }
+
+    fn grid<B: DrawingBackend>(&self, canvas: &Canvas<'_, B>, with_numbers: bool) -> Result<()> {
+        let (right, bottom) = (self.left + PANEL.0, self.bottom());
+        for &tick in &self.x.ticks {
+            let x = self.at((tick, self.y.lo)).0;
+            canvas.line(&[(x, self.top), (x, bottom)], GRID_LINE, 0.75)?;
+            canvas.line(&[(x, bottom), (x, bottom + 4.0)], SOFT, 0.75)?;
+            canvas.text(&self.x.text(tick), (x, bottom + 8.0), TICK, Anchor::Below, SOFT)?;
+        }
+        for &tick in &self.y.ticks {
+            let y = self.at((self.x.lo, tick)).1;
+            let is_zero = !self.y.log && tick.abs() < 1e-9 * (self.y.hi - self.y.lo);
+            let color = if is_zero { ZERO_LINE } else { GRID_LINE };
+            canvas.line(&[(self.left, y), (right, y)], color, 0.75)?;
+            if with_numbers {
+                canvas.text(&self.y.text(tick), (self.left - 8.0, y), TICK, Anchor::Right, SOFT)?;
+            }
+        }
+        canvas.line(&[(self.left, self.top), (self.left, bottom), (right, bottom)], SOFT, 1.0)
+    }
+
+    fn series<B: DrawingBackend>(&self, canvas: &Canvas<'_, B>, panel: &Panel) -> Result<()> {
+        for series in &panel.series {
+            // A refused point breaks the line.
+            for run in series.points.split(|p| p.y.is_err()) {
+                let path: Vec<_> = run.iter().filter_map(|p| Some(self.at((p.x, *p.y.as_ref().ok()?)))).collect();
+                if path.len() > 1 {
+                    series.stroke(canvas, &path)?;
+                }
+                if series.style == Style::Marked {
+                    path.iter().try_for_each(|&p| canvas.mark(p, MARK, series.color))?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn labels<B: DrawingBackend>(&self, canvas: &Canvas<'_, B>, panel: &Panel, with_label: bool) -> Result<()> {
+        canvas.text(&panel.title, (self.left, self.top - 18.0), HEADING, Anchor::Corner, INK)?;
+        if with_label {
+            let middle = (self.left - 48.0, self.top + PANEL.1 / 2.0);
+            canvas.text(&panel.y.label, middle, LABEL, Anchor::Upwards, INK)?;
+        }
+        Ok(())
+    }
+}
