@@ -34,3 +34,5 @@ pub mod render;
 pub mod pipeline;
 
 pub mod cli;
+#[cfg(feature = "gui")]
+pub mod gui;

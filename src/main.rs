@@ -1,3 +1,29 @@
 //! Starts the window or the command line.
 
-fn main() {}
+use conformant::cli::{self, Choice};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    match cli::parse() {
+        Choice::Command(command) => cli::run(command),
+        Choice::Window(file) => window(file),
+    }
+}
+
+#[cfg(feature = "gui")]
+fn window(file: Option<PathBuf>) -> ExitCode {
+    if !conformant::gui::has_display() {
+        let why = "there is no display (DISPLAY and WAYLAND_DISPLAY are not set)";
+        return cli::run_without_window(file, why, &conformant::gui::picture);
+    }
+    match conformant::gui::run(file) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => cli::fail(&error),
+    }
+}
+
+#[cfg(not(feature = "gui"))]
+fn window(file: Option<PathBuf>) -> ExitCode {
+    cli::run_without_window(file, "this program was built without the window (feature \"gui\")", &|_, _| Ok(None))
+}

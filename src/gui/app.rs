@@ -1,0 +1,411 @@
+//! The window: collects replies, draws the panels, carries out what they ask for.
+
+use super::command::{Command, Facts};
+use super::dialogs::{Dialog, Next, PathDialog, Purpose};
+use super::export_dialog::ExportDialog;
+use super::field::Refused;
+use super::outbox::{Action, Outbox};
+use super::session::{News, Session, first_project};
+use super::status::{self, Messages, Weight};
+use super::theme;
+use super::ui_state::{Tab, UiState};
+use super::viewport::Viewport;
+use super::{paint, panel_antenna, panel_cage, panel_compensation, panel_distortion};
+use crate::pipeline::worker::Worker;
+use crate::project::{CompensationMode, Edit, PresetEntry, Settings, file};
+use crate::render::Projection;
+use egui::{CentralPanel, Frame, Panel, ScrollArea, Ui, ViewportCommand};
+use std::path::{Path, PathBuf};
+
+const STATE_KEY: &str = "window";
+/// Widths of the side panels, points: all inputs fit, and 1280 points leave the view the larger half.
+const SIDE_WIDTHS: [f32; 2] = [300.0, 316.0];
+
+/// The window's application.
+#[derive(Debug)]
+pub(super) struct App {
+    pub(super) session: Session,
+    pub(super) state: UiState,
+    viewport: Viewport,
+    dialog: Dialog,
+    pub(super) messages: Messages,
+    /// Whether the window may close without asking.
+    may_close: bool,
+    /// The window's title as last set.
+    title: String,
+}
+
+impl App {
+    /// Opens the window on a project file, or on the first project.
+    pub(super) fn new(cc: &eframe::CreationContext<'_>, path: Option<&Path>) -> Self {
+        theme::install(&cc.egui_ctx);
+        if let Some(render) = &cc.wgpu_render_state {
+            paint::install(render);
+        }
+        let mut state: UiState = cc.storage.and_then(|s| eframe::get_value(s, STATE_KEY)).unwrap_or_default();
+        state.restore_camera();
+        cc.egui_ctx.set_theme(state.theme);
+        let ctx = cc.egui_ctx.clone();
+        let worker = Worker::spawn(move || ctx.request_repaint());
+        let mut app = Self {
+            session: Session::new(first_project(), None, worker),
+            state,
+            viewport: Viewport::default(),
+            dialog: Dialog::None,
+            messages: Messages::default(),
+            may_close: false,
+            title: String::new(),
+        };
+        if let Some(path) = path {
+            app.open(path);
+        }
+        app
+    }
+
+    fn facts(&self) -> Facts {
+        let project = self.session.project();
+        let history = self.session.history();
+        Facts {
+            can_undo: history.can_undo(),
+            can_redo: history.can_redo(),
+            has_selection: !self.state.selection.is_empty(),
+            has_hand_edits: !project.hand_edits.is_empty(),
+            compensates: project.settings.compensation != CompensationMode::None,
+            orthographic: self.state.camera.projection == Projection::Orthographic,
+            shows_cage: self.state.shows_cage,
+            sees_through: self.state.sees_through,
+            shows_log: self.state.shows_log,
+            selects_by_box: self.state.selects_by_box,
+            theme: Some(self.state.theme),
+        }
+    }
+
+    fn menus(&self, ui: &mut Ui, facts: &Facts, out: &mut Outbox) {
+        use Command as C;
+        let all = |keep: fn(&Command) -> bool| C::ALL.into_iter().filter(keep);
+        let menu = |ui: &mut Ui, title: &str, commands: Vec<Command>, out: &mut Outbox| {
+            ui.menu_button(title, |ui| {
+                for command in commands {
+                    if command.menu_item(ui, facts) {
+                        out.push(Action::Run(command));
+                    }
+                }
+            });
+        };
+        egui::MenuBar::new().ui(ui, |ui| {
+            menu(ui, "File", vec![C::New, C::Open, C::Save, C::SaveAs, C::Export, C::Quit], out);
+            let edit = [C::Undo, C::Redo, C::SelectAll, C::SelectNone, C::BoxSelect, C::ResetSelected, C::ResetAll];
+            menu(ui, "Edit", edit.to_vec(), out);
+            menu(ui, "Antenna", vec![C::Compensate, C::CompensateNot], out);
+            let mut view: Vec<Command> = vec![C::Fit];
+            view.extend(all(|c| matches!(c, C::LookFrom(_))));
+            view.extend([C::Orthographic, C::ShowCage, C::SeeThrough, C::ShowLog]);
+            menu(ui, "View", view, out);
+            menu(ui, "Theme", all(|c| matches!(c, C::Theme(_))).collect(), out);
+            menu(ui, "Help", vec![C::Keys], out);
+        });
+    }
+
+    fn toolbar(&self, ui: &mut Ui, facts: &Facts, out: &mut Outbox) {
+        use Command as C;
+        let groups: [&[Command]; 5] = [
+            &[C::Open, C::Save, C::Export],
+            &[C::Undo, C::Redo],
+            &[C::Compensate, C::CompensateNot],
+            &[C::BoxSelect, C::SelectNone],
+            &[C::Fit, C::Orthographic, C::ShowCage],
+        ];
+        ui.horizontal(|ui| {
+            for (number, group) in groups.into_iter().enumerate() {
+                if number > 0 {
+                    ui.separator();
+                }
+                for &command in group {
+                    if command.tool_button(ui, facts) {
+                        out.push(Action::Run(command));
+                    }
+                }
+            }
+        });
+    }
+
+    fn side_panels(&mut self, ui: &mut Ui, out: &mut Outbox) {
+        let pose = self.session.pose().cloned();
+        Panel::left("left").default_size(SIDE_WIDTHS[0]).size_range(260.0..=420.0).show(ui, |ui| {
+            ui.add_space(4.0);
+            ui.horizontal(|ui| {
+                ui.selectable_value(&mut self.state.tab, Tab::Cage, "Cage").on_hover_text("Presets, cage and vertices");
+                let tip = "Dimensions and materials of the flat antenna";
+                ui.selectable_value(&mut self.state.tab, Tab::Antenna, "Antenna").on_hover_text(tip);
+            });
+            ui.separator();
+            ScrollArea::vertical().auto_shrink(false).id_salt(self.state.tab == Tab::Cage).show(ui, |ui| {
+                match self.state.tab {
+                    Tab::Antenna => panel_antenna::ui(ui, &self.session.project().antenna, &mut self.state, out),
+                    Tab::Cage => panel_cage::ui(ui, self.session.project(), pose.as_ref(), &mut self.state, out),
+                }
+            });
+        });
+        Panel::right("right").default_size(SIDE_WIDTHS[1]).size_range(280.0..=440.0).show(ui, |ui| {
+            ui.add_space(4.0);
+            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                ui.heading("Distortion");
+                panel_distortion::ui(ui, &self.session, &mut self.state);
+                ui.add_space(6.0);
+                ui.separator();
+                ui.heading("Compensation");
+                panel_compensation::ui(ui, &self.session, Refused(self.state.refused.as_ref()), out);
+            });
+        });
+    }
+
+    pub(super) fn carry_out(&mut self, ctx: &egui::Context, action: Action) {
+        match action {
+            Action::Begin => self.session.begin(),
+            Action::End => {
+                if let Some(news) = self.session.end() {
+                    self.tell(news);
+                }
+            }
+            Action::Cancel => self.session.cancel(),
+            Action::Edit(place, edit) => self.edit(place, edit),
+            Action::AddPreset(preset) => {
+                let index = self.session.project().presets.len();
+                let entry = PresetEntry { enabled: true, preset };
+                self.edit("presets", Edit::InsertPreset { index, entry });
+            }
+            Action::Run(command) => self.run(ctx, command),
+            Action::StopWork => self.session.stop_work(),
+            Action::OpenPath(path) => self.open(&path),
+            Action::SavePath(path) => {
+                let then = match &self.dialog {
+                    Dialog::Path(dialog) => dialog.then,
+                    _ => None,
+                };
+                if self.save(&path) {
+                    self.go_on(ctx, then);
+                }
+            }
+            Action::SaveThen(next) => self.save_then(ctx, Some(next)),
+            Action::AskOpen => self.ask_open(),
+            Action::Start(project) => {
+                self.session.replace(*project, None);
+                self.state.fit = true;
+                self.state.selection.clear();
+            }
+            Action::CloseWindow => {
+                self.may_close = true;
+                ctx.send_viewport_cmd(ViewportCommand::Close);
+            }
+        }
+    }
+
+    pub(super) fn edit(&mut self, place: &'static str, edit: Edit) {
+        self.state.refused = match self.session.apply(edit) {
+            Ok(()) => None,
+            Err(error) => Some((place, error.to_string())),
+        };
+    }
+
+    fn run(&mut self, ctx: &egui::Context, command: Command) {
+        let state = &mut self.state;
+        match command {
+            Command::New => self.ask_unsaved(ctx, Next::New),
+            Command::Open => self.ask_unsaved(ctx, Next::Open),
+            Command::Quit => self.ask_unsaved(ctx, Next::Quit),
+            Command::Save => self.save_then(ctx, None),
+            Command::SaveAs => self.ask_save(None),
+            Command::Export => {
+                let folder = self.folder().join(format!("{}-export", self.session.name()));
+                let finished = self.session.finished();
+                let dialog = ExportDialog::new(self.session.project().clone(), finished, &folder);
+                self.dialog = Dialog::Export(Box::new(dialog));
+            }
+            Command::Undo => self.session.undo(),
+            Command::Redo => self.session.redo(),
+            Command::SelectAll => {
+                let count = self.session.pose().map_or(0, |p| p.cage.n_handles());
+                state.selection = (0..u32::try_from(count).unwrap_or(u32::MAX)).collect();
+            }
+            Command::SelectNone => state.selection.clear(),
+            Command::BoxSelect => state.selects_by_box = !state.selects_by_box,
+            Command::ResetSelected => {
+                let zero = state.selection.iter().map(|&v| (v, [0.0; 3])).collect();
+                self.edit("hand edits", Edit::MoveVertices(zero));
+            }
+            Command::ResetAll => self.edit("hand edits", Edit::ClearHandEdits),
+            Command::Compensate => self.compensate(CompensationMode::Isometric),
+            Command::CompensateNot => self.compensate(CompensationMode::None),
+            Command::Fit => state.fit = true,
+            Command::LookFrom(view) => state.camera.look_from(view),
+            Command::Orthographic => {
+                state.camera.projection = match state.camera.projection {
+                    Projection::Perspective => Projection::Orthographic,
+                    Projection::Orthographic => Projection::Perspective,
+                }
+            }
+            Command::ShowCage => state.shows_cage = !state.shows_cage,
+            Command::SeeThrough => state.sees_through = !state.sees_through,
+            Command::ShowLog => state.shows_log = !state.shows_log,
+            Command::Theme(theme) => {
+                state.theme = theme;
+                ctx.set_theme(theme);
+            }
+            Command::Keys => self.dialog = Dialog::Keys,
+        }
+    }
+
+    /// Switches the compensation on or off; one that is on already stays as chosen.
+    fn compensate(&mut self, mode: CompensationMode) {
+        let settings = self.session.project().settings;
+        if mode == CompensationMode::None || settings.compensation == CompensationMode::None {
+            self.edit("compensation", Edit::SetSettings(Settings { compensation: mode, ..settings }));
+        }
+    }
+
+    fn ask_unsaved(&mut self, ctx: &egui::Context, next: Next) {
+        if self.session.history().is_dirty() {
+            self.dialog = Dialog::Unsaved(next);
+        } else {
+            self.go_on(ctx, Some(next));
+        }
+    }
+
+    fn go_on(&mut self, ctx: &egui::Context, next: Option<Next>) {
+        match next {
+            None => {}
+            Some(Next::New) => self.carry_out(ctx, Action::Start(Box::new(first_project()))),
+            Some(Next::Open) => self.ask_open(),
+            Some(Next::Quit) => self.carry_out(ctx, Action::CloseWindow),
+        }
+    }
+
+    fn folder(&self) -> PathBuf {
+        let own = self.session.path.as_ref().and_then(|p| p.parent().map(Path::to_owned));
+        let home = || std::env::var_os("HOME").map(PathBuf::from);
+        own.or_else(|| self.state.last_folder.clone()).or_else(home).unwrap_or_default()
+    }
+
+    fn ask_open(&mut self) {
+        self.dialog = Dialog::Path(PathDialog::new(Purpose::Open, &self.folder().join(""), None));
+    }
+
+    fn ask_save(&mut self, then: Option<Next>) {
+        let suggestion = match &self.session.path {
+            Some(path) => path.clone(),
+            None => self.folder().join("antenna.json"),
+        };
+        self.dialog = Dialog::Path(PathDialog::new(Purpose::Save, &suggestion, then));
+    }
+
+    fn save_then(&mut self, ctx: &egui::Context, then: Option<Next>) {
+        match self.session.path.clone() {
+            Some(path) => {
+                if self.save(&path) {
+                    self.go_on(ctx, then);
+                }
+            }
+            None => self.ask_save(then),
+        }
+    }
+
+    fn save(&mut self, path: &Path) -> bool {
+        self.dialog = Dialog::None;
+        match file::write(path, self.session.project()) {
+            Ok(()) => {
+                self.session.mark_saved(path);
+                self.state.last_folder = path.parent().map(Path::to_owned);
+                self.messages.say(Weight::Good, &format!("Saved {}", path.display()));
+                true
+            }
+            Err(error) => {
+                self.messages.say(Weight::Error, &error.to_string());
+                false
+            }
+        }
+    }
+
+    fn open(&mut self, path: &Path) {
+        self.dialog = Dialog::None;
+        match file::read(path) {
+            Ok(project) => {
+                self.session.replace(project, Some(path.to_owned()));
+                self.state.last_folder = path.parent().map(Path::to_owned);
+                self.state.selection.clear();
+                self.state.fit = true;
+            }
+            Err(error) => self.messages.say(Weight::Error, &error.to_string()),
+        }
+    }
+
+    fn tell(&mut self, news: News) {
+        match news {
+            News::Refused(message) => self.messages.say(Weight::Error, &format!("Not possible: {message}")),
+            News::TakenBack(message) => {
+                self.messages.say(Weight::Warning, &format!("Not possible that far, taken back: {message}"));
+            }
+        }
+    }
+
+    /// Asks before a window with unsaved changes closes, and keeps the title true.
+    fn watch_window(&mut self, ctx: &egui::Context) {
+        let is_dirty = self.session.history().is_dirty();
+        if ctx.input(|i| i.viewport().close_requested()) && is_dirty && !self.may_close {
+            ctx.send_viewport_cmd(ViewportCommand::CancelClose);
+            self.dialog = Dialog::Unsaved(Next::Quit);
+        }
+        let title = format!("{}{} - Conformant", self.session.name(), if is_dirty { "*" } else { "" });
+        if title != self.title {
+            ctx.send_viewport_cmd(ViewportCommand::Title(title.clone()));
+            self.title = title;
+        }
+    }
+}
+
+impl eframe::App for App {
+    fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
+        let ctx = ui.ctx().clone();
+        for news in self.session.sync() {
+            self.tell(news);
+        }
+        let facts = self.facts();
+        let mut out = Outbox::default();
+        let is_modal = !matches!(self.dialog, Dialog::None);
+        if !is_modal && !self.viewport.is_dragging() {
+            out.actions.extend(Command::pressed(&ctx, &facts).into_iter().map(Action::Run));
+        }
+        Panel::top("menus").show(ui, |ui| self.menus(ui, &facts, &mut out));
+        Panel::top("tools").show(ui, |ui| self.toolbar(ui, &facts, &mut out));
+        Panel::bottom("status").show(ui, |ui| {
+            status::ui(ui, &self.session, &self.messages, &mut self.state, &mut out);
+        });
+        if self.state.shows_log {
+            Panel::bottom("log").resizable(true).default_size(110.0).show(ui, |ui| self.messages.log(ui));
+        }
+        self.side_panels(ui, &mut out);
+        let pose = self.session.pose().cloned();
+        CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
+            self.viewport.ui(ui, &self.session, pose.as_ref(), &mut self.state, &mut out);
+        });
+        let name = self.session.name();
+        self.dialog.ui(&ctx, &name, &mut self.state, &mut out);
+        self.messages.show_toasts(&ctx);
+        for action in out.actions {
+            self.carry_out(&ctx, action);
+        }
+        self.watch_window(&ctx);
+        // Whatever this frame changed goes to the worker at once.
+        for news in self.session.sync() {
+            self.tell(news);
+        }
+        if self.session.is_busy() {
+            // For the progress in the status line.
+            ctx.request_repaint_after(std::time::Duration::from_millis(100));
+        }
+    }
+
+    fn save(&mut self, storage: &mut dyn eframe::Storage) {
+        self.state.keep_camera();
+        eframe::set_value(storage, STATE_KEY, &self.state);
+    }
+}

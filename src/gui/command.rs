@@ -1,0 +1,279 @@
+//! Every command of the window: its text, tooltip, keys and when it can be used.
+//!
+//! Menus, toolbar and shortcuts all read this one list, so that none can say something the others do not.
+
+use crate::render::StandardView;
+use egui::{Context, Key, KeyboardShortcut, Modifiers, ThemePreference, os::OperatingSystem};
+
+/// Something the user can ask for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Command {
+    New,
+    Open,
+    Save,
+    SaveAs,
+    Export,
+    Quit,
+    Undo,
+    Redo,
+    SelectAll,
+    SelectNone,
+    BoxSelect,
+    ResetSelected,
+    ResetAll,
+    Compensate,
+    CompensateNot,
+    Fit,
+    LookFrom(StandardView),
+    Orthographic,
+    ShowCage,
+    SeeThrough,
+    ShowLog,
+    Theme(ThemePreference),
+    Keys,
+}
+
+/// What decides whether a command can be used, and whether it is ticked.
+#[derive(Clone, Copy, Debug, Default)]
+#[allow(clippy::struct_excessive_bools, reason = "each is an independent fact of the present moment")]
+pub(super) struct Facts {
+    pub(super) can_undo: bool,
+    pub(super) can_redo: bool,
+    pub(super) has_selection: bool,
+    pub(super) has_hand_edits: bool,
+    pub(super) compensates: bool,
+    pub(super) orthographic: bool,
+    pub(super) shows_cage: bool,
+    pub(super) sees_through: bool,
+    pub(super) shows_log: bool,
+    pub(super) selects_by_box: bool,
+    pub(super) theme: Option<ThemePreference>,
+}
+
+impl Command {
+    /// All commands, in the order of the menus.
+    pub(super) const ALL: [Self; 31] = [
+        Self::New,
+        Self::Open,
+        Self::Save,
+        Self::SaveAs,
+        Self::Export,
+        Self::Quit,
+        Self::Undo,
+        Self::Redo,
+        Self::SelectAll,
+        Self::SelectNone,
+        Self::BoxSelect,
+        Self::ResetSelected,
+        Self::ResetAll,
+        Self::Compensate,
+        Self::CompensateNot,
+        Self::Fit,
+        Self::LookFrom(StandardView::Front),
+        Self::LookFrom(StandardView::Back),
+        Self::LookFrom(StandardView::Right),
+        Self::LookFrom(StandardView::Left),
+        Self::LookFrom(StandardView::Top),
+        Self::LookFrom(StandardView::Bottom),
+        Self::LookFrom(StandardView::Isometric),
+        Self::Orthographic,
+        Self::ShowCage,
+        Self::SeeThrough,
+        Self::ShowLog,
+        Self::Theme(ThemePreference::System),
+        Self::Theme(ThemePreference::Light),
+        Self::Theme(ThemePreference::Dark),
+        Self::Keys,
+    ];
+
+    /// The text in menus and on buttons, and what it does.
+    pub(super) fn text_and_tip(self) -> (&'static str, &'static str) {
+        match self {
+            Self::New => ("New", "Start again with the paper's antenna, bent to R = 10 mm"),
+            Self::Open => ("Open…", "Open a project file"),
+            Self::Save => ("Save", "Save the project file"),
+            Self::SaveAs => ("Save as…", "Save the project under another name"),
+            Self::Export => ("Export…", "Write the geometry with its certificate of no gaps"),
+            Self::Quit => ("Quit", "Close the window"),
+            Self::Undo => ("Undo", "Take back the last step"),
+            Self::Redo => ("Redo", "Do again what was taken back"),
+            Self::SelectAll => ("Select all vertices", "Select every cage vertex"),
+            Self::SelectNone => ("Select none", "Deselect all cage vertices"),
+            Self::BoxSelect => ("Select by box", "Drag a box around cage vertices; Shift adds to the selection"),
+            Self::ResetSelected => {
+                ("Reset selected vertices", "Put the selected vertices back to where the presets have them")
+            }
+            Self::ResetAll => ("Reset all vertices", "Remove all hand edits of the cage"),
+            Self::Compensate => ("Compensate", "Change the flat antenna so that it keeps its size when deformed"),
+            Self::CompensateNot => ("No compensation", "Deform the antenna as drawn"),
+            Self::Fit => ("Fit", "Show all of the antenna and its cage"),
+            Self::LookFrom(view) => match view {
+                StandardView::Front => ("Front", "Look along +y, x to the right"),
+                StandardView::Back => ("Back", "Look along -y"),
+                StandardView::Right => ("Right", "Look from +x"),
+                StandardView::Left => ("Left", "Look from -x"),
+                StandardView::Top => ("Top", "Look down, x to the right and y up"),
+                StandardView::Bottom => ("Bottom", "Look up at the ground plane"),
+                StandardView::Isometric => ("Isometric", "Look from +x, -y and +z"),
+            },
+            Self::Orthographic => ("Orthographic", "No perspective: equal lengths look equal"),
+            Self::ShowCage => ("Cage", "Show the cage and its vertices"),
+            Self::SeeThrough => ("See-through substrate", "Show the pin and the ground through the substrate"),
+            Self::ShowLog => ("Messages", "Show the messages of this session"),
+            Self::Theme(ThemePreference::System) => ("As the system", "Light or dark as the desktop is"),
+            Self::Theme(ThemePreference::Light) => ("Light", "Dark lettering on a light ground"),
+            Self::Theme(ThemePreference::Dark) => ("Dark", "Light lettering on a dark ground"),
+            Self::Keys => ("Keys and mouse", "List what the keys and the mouse do"),
+        }
+    }
+
+    /// Keys that run it; the first is the one shown.
+    pub(super) fn keys(self, os: OperatingSystem) -> Vec<KeyboardShortcut> {
+        let command = |key| KeyboardShortcut::new(Modifiers::COMMAND, key);
+        let command_shift = |key| KeyboardShortcut::new(Modifiers::COMMAND | Modifiers::SHIFT, key);
+        let plain = |key| KeyboardShortcut::new(Modifiers::NONE, key);
+        let control = |key| KeyboardShortcut::new(Modifiers::CTRL, key);
+        match self {
+            Self::New => vec![command(Key::N)],
+            Self::Open => vec![command(Key::O)],
+            Self::Save => vec![command(Key::S)],
+            Self::SaveAs => vec![command_shift(Key::S)],
+            Self::Export => vec![command(Key::E)],
+            Self::Quit => vec![command(Key::Q)],
+            Self::Undo => vec![command(Key::Z)],
+            Self::Redo if os == OperatingSystem::Mac => vec![command_shift(Key::Z)],
+            Self::Redo => vec![command(Key::Y), command_shift(Key::Z)],
+            Self::SelectAll => vec![command(Key::A)],
+            Self::SelectNone => vec![command_shift(Key::A)],
+            Self::BoxSelect => vec![plain(Key::B)],
+            Self::ResetSelected => vec![plain(Key::Delete), plain(Key::Backspace)],
+            Self::Compensate => vec![command(Key::Enter)],
+            Self::Fit => vec![plain(Key::F), plain(Key::Home)],
+            Self::LookFrom(StandardView::Front) => vec![plain(Key::Num1)],
+            Self::LookFrom(StandardView::Back) => vec![control(Key::Num1)],
+            Self::LookFrom(StandardView::Right) => vec![plain(Key::Num3)],
+            Self::LookFrom(StandardView::Left) => vec![control(Key::Num3)],
+            Self::LookFrom(StandardView::Top) => vec![plain(Key::Num7)],
+            Self::LookFrom(StandardView::Bottom) => vec![control(Key::Num7)],
+            Self::LookFrom(StandardView::Isometric) => vec![plain(Key::Num0)],
+            Self::Orthographic => vec![plain(Key::Num5)],
+            Self::ShowCage => vec![plain(Key::C)],
+            Self::SeeThrough => vec![plain(Key::T)],
+            Self::Keys => vec![plain(Key::F1)],
+            Self::ResetAll | Self::CompensateNot | Self::ShowLog | Self::Theme(_) => Vec::new(),
+        }
+    }
+
+    /// Whether it can be used now.
+    pub(super) fn is_enabled(self, facts: &Facts) -> bool {
+        match self {
+            Self::Undo => facts.can_undo,
+            Self::Redo => facts.can_redo,
+            Self::SelectNone => facts.has_selection,
+            Self::ResetSelected => facts.has_selection && facts.has_hand_edits,
+            Self::ResetAll => facts.has_hand_edits,
+            Self::CompensateNot => facts.compensates,
+            _ => true,
+        }
+    }
+
+    /// Whether it is ticked; `None` for commands that are no switches.
+    pub(super) fn is_ticked(self, facts: &Facts) -> Option<bool> {
+        match self {
+            Self::Orthographic => Some(facts.orthographic),
+            Self::ShowCage => Some(facts.shows_cage),
+            Self::SeeThrough => Some(facts.sees_through),
+            Self::ShowLog => Some(facts.shows_log),
+            Self::BoxSelect => Some(facts.selects_by_box),
+            Self::Theme(theme) => Some(facts.theme == Some(theme)),
+            _ => None,
+        }
+    }
+
+    /// What its tooltip says: what it does and its keys.
+    pub(super) fn tooltip(self, ctx: &Context) -> String {
+        let (_, tip) = self.text_and_tip();
+        let keys: Vec<String> = self.keys(ctx.os()).iter().map(|k| ctx.format_shortcut(k)).collect();
+        if keys.is_empty() { tip.to_owned() } else { format!("{tip} ({})", keys.join(", ")) }
+    }
+
+    /// The commands whose keys were pressed in this frame, if they can be used; keys are consumed.
+    ///
+    /// Keys that mean something to a text field belong to it while one is being edited.
+    pub(super) fn pressed(ctx: &Context, facts: &Facts) -> Vec<Self> {
+        let os = ctx.os();
+        let typing = ctx.text_edit_focused();
+        let mut keys: Vec<(KeyboardShortcut, Self)> =
+            Self::ALL.iter().flat_map(|&c| c.keys(os).into_iter().map(move |k| (k, c))).collect();
+        // A shortcut matches with extra modifiers too, so the ones with more modifiers go first.
+        keys.sort_by_key(|(k, _)| std::cmp::Reverse(usize::from(k.modifiers.any()) + usize::from(k.modifiers.shift)));
+        // Letters and digits, and the keys by which text is selected, undone and redone.
+        let is_text = |k: &KeyboardShortcut| {
+            let edits_text = matches!(k.logical_key, Key::A | Key::Z | Key::Y);
+            (k.modifiers.is_none() && k.logical_key != Key::F1) || edits_text
+        };
+        let mut found = Vec::new();
+        for (shortcut, command) in keys {
+            if !(typing && is_text(&shortcut)) && ctx.input_mut(|i| i.consume_shortcut(&shortcut)) {
+                found.push(command);
+            }
+        }
+        found.retain(|c| c.is_enabled(facts));
+        found
+    }
+
+    /// Draws it as a line of a menu; true if it was chosen.
+    pub(super) fn menu_item(self, ui: &mut egui::Ui, facts: &Facts) -> bool {
+        let (text, _) = self.text_and_tip();
+        let keys = self.keys(ui.ctx().os());
+        let mut button = match self.is_ticked(facts) {
+            Some(ticked) => egui::Button::selectable(ticked, text),
+            None => egui::Button::new(text),
+        };
+        if let Some(shortcut) = keys.first() {
+            button = button.shortcut_text(ui.ctx().format_shortcut(shortcut));
+        }
+        let tip = self.tooltip(ui.ctx());
+        ui.add_enabled(self.is_enabled(facts), button).on_hover_text(tip).clicked()
+    }
+
+    /// Draws it as a button of the toolbar; true if it was pressed.
+    pub(super) fn tool_button(self, ui: &mut egui::Ui, facts: &Facts) -> bool {
+        let (text, _) = self.text_and_tip();
+        let text = text.trim_end_matches('…');
+        let button = match self.is_ticked(facts) {
+            Some(ticked) => egui::Button::new(text).selected(ticked),
+            None => egui::Button::new(text),
+        };
+        let tip = self.tooltip(ui.ctx());
+        ui.add_enabled(self.is_enabled(facts), button).on_hover_text(&tip).on_disabled_hover_text(tip).clicked()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashMap;
+
+    #[test]
+    fn no_two_commands_share_a_key() {
+        for os in [OperatingSystem::Nix, OperatingSystem::Windows, OperatingSystem::Mac] {
+            let mut seen = HashMap::new();
+            for command in Command::ALL {
+                for key in command.keys(os) {
+                    let before = seen.insert(key, command);
+                    assert_eq!(before, None, "{key:?} runs {command:?} too");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn every_command_says_what_it_does() {
+        for command in Command::ALL {
+            let (text, tip) = command.text_and_tip();
+            assert!(!text.is_empty() && tip.len() > text.len() / 2, "{command:?}");
+            assert!(!tip.ends_with('.'), "{command:?}: tips are phrases");
+        }
+    }
+}

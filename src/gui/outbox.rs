@@ -1,0 +1,68 @@
+//! What panels and the viewport ask for: they draw from plain values and change nothing themselves.
+
+use super::command::Command;
+use super::dialogs::Next;
+use crate::project::{Edit, PresetSpec, Project};
+use std::path::PathBuf;
+
+/// A wish, carried out after all panels are drawn.
+#[derive(Clone, Debug)]
+pub(super) enum Action {
+    /// A gesture begins: what follows is one undo step.
+    Begin,
+    /// A change of the project; the place where a refusal is shown.
+    Edit(&'static str, Edit),
+    /// The gesture ends.
+    End,
+    /// The gesture is called off.
+    Cancel,
+    /// A command.
+    Run(Command),
+    /// Adds a preset at the end of the stack.
+    AddPreset(PresetSpec),
+    /// Stops the computation under way.
+    StopWork,
+    /// Opens a project file.
+    OpenPath(PathBuf),
+    /// Saves to a project file.
+    SavePath(PathBuf),
+    /// Replaces the project by another one that has no file yet.
+    Start(Box<Project>),
+    /// Saves, and goes on with what was asked for.
+    SaveThen(Next),
+    /// Asks for the file to open.
+    AskOpen,
+    /// Closes the window without asking again.
+    CloseWindow,
+}
+
+/// The wishes of one frame, in order.
+#[derive(Debug, Default)]
+pub(super) struct Outbox {
+    pub(super) actions: Vec<Action>,
+}
+
+impl Outbox {
+    /// Adds a wish.
+    pub(super) fn push(&mut self, action: Action) {
+        self.actions.push(action);
+    }
+
+    /// Asks for a change of the project; `place` is the field that shows a refusal.
+    pub(super) fn edit(&mut self, place: &'static str, edit: Edit) {
+        self.push(Action::Edit(place, edit));
+    }
+
+    /// Marks begin and end of a gesture on a widget around the change it asks for.
+    pub(super) fn gesture(&mut self, response: &egui::Response, change: Option<(&'static str, Edit)>) {
+        if response.drag_started() {
+            self.push(Action::Begin);
+        }
+        if let Some((place, edit)) = change {
+            self.edit(place, edit);
+        }
+        if response.drag_stopped() {
+            self.push(Action::End);
+        }
+    }
+}

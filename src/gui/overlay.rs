@@ -1,0 +1,169 @@
+//! Lettering over the 3-D view: view name, axes, scale bar, colour bar, and hints while something is dragged.
+
+use super::session::Pose;
+use super::theme::Tokens;
+use super::ui_state::{Heat, UiState};
+use super::viewport::Lock;
+use crate::geometry::DVec3;
+use crate::render::pick::surface_at;
+use crate::render::{ColorMap, Projection, StandardView, Surface, Vec2, Vec3, View, colormap, round_length};
+use crate::units::to_mm;
+use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, StrokeKind, Ui, pos2, vec2};
+
+/// Distance of the lettering from the border, points.
+const MARGIN: f32 = 14.0;
+/// Height of hints over the bottom, points: above the scale bar.
+const HINT_HEIGHT: f32 = 48.0;
+/// Longest scale bar, points.
+const LONGEST_BAR: f32 = 130.0;
+
+fn font() -> FontId {
+    FontId::proportional(12.0)
+}
+
+/// Draws what is always there, and the colour bar if `range` (percent) says that something is painted.
+pub(super) fn draw(ui: &Ui, rect: Rect, view: &View, state: &UiState, range: Option<f32>) {
+    let painter = ui.painter().with_clip_rect(rect);
+    let tokens = Tokens::here(ui);
+    let place = rect.min + vec2(MARGIN, MARGIN - 2.0);
+    painter.text(place, Align2::LEFT_TOP, view_name(view), font(), tokens.weak);
+    axes(&painter, rect, view, tokens);
+    scale_bar(&painter, rect, view, tokens);
+    if let Some(range) = range {
+        color_bar(&painter, rect, state.heat, range, tokens);
+    }
+}
+
+/// What the camera shows, in words.
+pub(super) fn view_name(view: &View) -> String {
+    let camera = &view.camera;
+    let near = |v: &StandardView| {
+        let (yaw, pitch) = v.angles();
+        let turn = (camera.yaw - yaw).rem_euclid(std::f32::consts::TAU);
+        turn.min(std::f32::consts::TAU - turn) < 1e-3 && (camera.pitch - pitch).abs() < 1e-3
+    };
+    let direction = StandardView::ALL.iter().find(|v| near(v)).map(|v| super::command::Command::LookFrom(*v));
+    let projection = if camera.projection == Projection::Orthographic { "orthographic" } else { "perspective" };
+    match direction {
+        Some(command) => format!("{}, {projection}", command.text_and_tip().0),
+        None => format!("Free view, {projection}"),
+    }
+}
+
+fn axes(painter: &Painter, rect: Rect, view: &View, tokens: &Tokens) {
+    let center = pos2(rect.left() + 44.0, rect.bottom() - 44.0);
+    let [right, up, back] = view.camera.axes();
+    let mut arrows: Vec<(f32, egui::Vec2, usize)> = (0..3)
+        .map(|i| {
+            let axis = Vec3::AXES[i];
+            (axis.dot(back), vec2(axis.dot(right), -axis.dot(up)) * 26.0, i)
+        })
+        .collect();
+    arrows.sort_by(|a, b| a.0.total_cmp(&b.0));
+    for (_, along, i) in arrows {
+        let color = tokens.axes[i];
+        painter.line_segment([center, center + along], Stroke::new(2.0, color));
+        let name = ["x", "y", "z"][i];
+        let reach = if along.length() < 4.0 { vec2(7.0, -7.0) } else { along * (1.0 + 9.0 / along.length()) };
+        painter.text(center + reach, Align2::CENTER_CENTER, name, FontId::proportional(13.0), color);
+    }
+}
+
+fn scale_bar(painter: &Painter, rect: Rect, view: &View, tokens: &Tokens) {
+    let per_point = view.length_per_point(view.camera.target);
+    let length = round_length(per_point * LONGEST_BAR);
+    let width = length / per_point;
+    let right = pos2(rect.right() - MARGIN, rect.bottom() - MARGIN - 4.0);
+    let left = right - vec2(width, 0.0);
+    let stroke = Stroke::new(1.5, tokens.text);
+    painter.line_segment([left, right], stroke);
+    for end in [left, right] {
+        painter.line_segment([end - vec2(0.0, 4.0), end + vec2(0.0, 4.0)], stroke);
+    }
+    let text = if length < 0.1 { format!("{} µm", length * 1e3) } else { format!("{length} mm") };
+    painter.text(left.lerp(right, 0.5) - vec2(0.0, 4.0), Align2::CENTER_BOTTOM, text, font(), tokens.text);
+}
+
+fn color_bar(painter: &Painter, rect: Rect, heat: Heat, range: f32, tokens: &Tokens) {
+    let height = (rect.height() * 0.4).clamp(80.0, 240.0);
+    let top = pos2(rect.right() - MARGIN - 60.0, rect.top() + MARGIN + 22.0);
+    let bar = Rect::from_min_size(top, vec2(14.0, height));
+    let mut mesh = egui::Mesh::default();
+    const STEPS: u32 = 64;
+    for k in 0..=STEPS {
+        let t = k as f32 / STEPS as f32;
+        let [r, g, b] = colormap::color(ColorMap::CoolWarm, 1.0 - t);
+        let y = bar.top() + t * height;
+        mesh.colored_vertex(pos2(bar.left(), y), Color32::from_rgb(r, g, b));
+        mesh.colored_vertex(pos2(bar.right(), y), Color32::from_rgb(r, g, b));
+        if k > 0 {
+            mesh.add_triangle(2 * k - 2, 2 * k - 1, 2 * k);
+            mesh.add_triangle(2 * k - 1, 2 * k + 1, 2 * k);
+        }
+    }
+    painter.add(mesh);
+    painter.rect_stroke(bar, 0.0, Stroke::new(1.0, tokens.text), StrokeKind::Outside);
+    let digits = if range < 1.0 { 2 } else { 1 };
+    for k in 0..5u8 {
+        let t = f32::from(k) / 4.0;
+        let y = bar.top() + t * height;
+        let value = range * (1.0 - 2.0 * t);
+        painter.line_segment([pos2(bar.right(), y), pos2(bar.right() + 4.0, y)], Stroke::new(1.0, tokens.text));
+        let text = if k == 2 { "0 %".to_owned() } else { format!("{value:+.digits$} %") };
+        painter.text(pos2(bar.right() + 7.0, y), Align2::LEFT_CENTER, text, font(), tokens.text);
+    }
+    let title = pos2(rect.right() - MARGIN, rect.top() + MARGIN - 2.0);
+    painter.text(title, Align2::RIGHT_TOP, heat.text(), font(), tokens.text);
+}
+
+/// The box that is being drawn.
+pub(super) fn selection_box(ui: &Ui, from: Pos2, to: Pos2) {
+    let tokens = Tokens::here(ui);
+    let area = Rect::from_two_pos(from, to);
+    let fill = tokens.accent.gamma_multiply(0.15);
+    ui.painter().rect(area, 0.0, fill, Stroke::new(1.0, tokens.accent), StrokeKind::Inside);
+}
+
+/// How far the selection was moved, and the keys that bind the motion.
+pub(super) fn move_hint(ui: &Ui, rect: Rect, delta: DVec3, lock: Option<Lock>) {
+    let bound = match lock {
+        None => String::new(),
+        Some(Lock { axis, across: false }) => format!("   along {}", ["x", "y", "z"][axis]),
+        Some(Lock { axis, across: true }) => format!("   in the plane {}", ["y z", "x z", "x y"][axis]),
+    };
+    let DVec3 { x, y, z } = delta;
+    let keys = "X, Y, Z: along an axis (with Shift: in a plane)   Esc: cancel";
+    hint(ui, rect, &format!("Moved by {x:+.3}, {y:+.3}, {z:+.3} mm{bound}   {keys}"));
+}
+
+/// Number and place of the vertex under the pointer.
+pub(super) fn vertex_hint(ui: &Ui, rect: Rect, vertex: u32, pose: &Pose) {
+    if let Some(at) = pose.vertices.get(vertex as usize) {
+        let [x, y, z] = at.to_array().map(to_mm);
+        hint(ui, rect, &format!("Cage vertex {vertex} at {x:.3}, {y:.3}, {z:.3} mm: drag to move, Shift adds"));
+    }
+}
+
+/// One line at the bottom of the view, above the scale bar.
+pub(super) fn hint(ui: &Ui, rect: Rect, text: &str) {
+    let tokens = Tokens::here(ui);
+    let galley = ui.painter().layout_no_wrap(text.to_owned(), font(), tokens.text);
+    let at = pos2(rect.center().x - galley.size().x / 2.0, rect.bottom() - HINT_HEIGHT - galley.size().y);
+    let back = Rect::from_min_size(at, galley.size()).expand2(vec2(8.0, 4.0));
+    ui.painter().rect_filled(back, 4.0, tokens.panel);
+    ui.painter().galley(at, galley, tokens.text);
+}
+
+/// The painted value under the pointer.
+pub(super) fn value_hint(ui: &Ui, view: &View, surface: &Surface, pointer: Pos2, at: Vec2, state: &UiState) {
+    if surface.scalars.is_none() || ui.input(|i| i.pointer.any_down()) {
+        return;
+    }
+    let Some(value) = surface_at(view, surface, at).and_then(|hit| hit.value) else { return };
+    let tokens = Tokens::here(ui);
+    let text = format!("{} {value:+.2} %", state.heat.text());
+    let galley = ui.painter().layout_no_wrap(text, font(), tokens.text);
+    let place = pointer + vec2(14.0, 10.0);
+    ui.painter().rect_filled(Rect::from_min_size(place, galley.size()).expand(4.0), 3.0, tokens.panel);
+    ui.painter().galley(place, galley, tokens.text);
+}

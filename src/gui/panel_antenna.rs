@@ -1,0 +1,155 @@
+//! The antenna's dimensions and materials, and a first guess of them for a wanted frequency.
+
+use super::field::{Number, Refused, rows, section};
+use super::outbox::Outbox;
+use super::theme::Tokens;
+use super::ui_state::UiState;
+use crate::antenna::{FirstGuess, first_guess};
+use crate::project::{AntennaSpec, Edit};
+use crate::units::{GHZ, to_mm};
+use egui::{RichText, Ui};
+
+type Access = fn(&mut AntennaSpec) -> &mut f64;
+type AccessCount = fn(&mut AntennaSpec) -> &mut usize;
+
+/// Titles of the groups, their numbers, and where each number is kept.
+fn groups() -> [(&'static str, Vec<(Number, Access)>); 4] {
+    let mm = |place, label, tip| Number::new(place, label, "mm", 0.01).tip(tip);
+    let plain = |place, label, speed, tip| Number::new(place, label, "", speed).tip(tip);
+    [
+        (
+            "Patch",
+            vec![
+                (mm("width", "Width W", "Extent of the patch along x"), |a| &mut a.width_mm),
+                (mm("length", "Length L", "Extent along y: the resonant side"), |a| &mut a.length_mm),
+                (mm("patch_thickness", "Thickness", "Thickness of the patch's metal"), |a| &mut a.patch_thickness_mm),
+            ],
+        ),
+        (
+            "Substrate",
+            vec![
+                (mm("height", "Height h", "From the ground to the patch"), |a| &mut a.height_mm),
+                (mm("ground_width", "Width", "Extent of substrate and ground along x"), |a| &mut a.ground_width_mm),
+                (mm("ground_length", "Length", "Extent of substrate and ground along y"), |a| &mut a.ground_length_mm),
+                (mm("ground_thickness", "Ground thickness", "Thickness of the ground's metal"), |a| {
+                    &mut a.ground_thickness_mm
+                }),
+                (plain("substrate.eps_r", "Permittivity εr", 0.01, "Relative permittivity, at least 1"), |a| {
+                    &mut a.substrate.eps_r
+                }),
+                (plain("substrate.tan_delta", "Loss tangent", 0.0001, "Loss tangent of the substrate"), |a| {
+                    &mut a.substrate.tan_delta
+                }),
+            ],
+        ),
+        (
+            "Feed",
+            vec![
+                (mm("inset", "Inset y0", "From the radiating edge at y = -L/2 to the pin's axis"), |a| &mut a.inset_mm),
+                (mm("feed_offset", "Offset", "Of the pin from the center line, along x"), |a| &mut a.feed_offset_mm),
+                (mm("pin_radius", "Pin radius", "Radius of the inner conductor"), |a| &mut a.pin_radius_mm),
+            ],
+        ),
+        (
+            "Coaxial line",
+            vec![
+                (mm("coax_radius", "Outer radius", "Inner radius of the outer conductor"), |a| &mut a.coax_radius_mm),
+                (mm("coax_length", "Length", "Of the line below the ground"), |a| &mut a.coax_length_mm),
+                (plain("sheath.eps_r", "Permittivity εr", 0.01, "Of the sheath between the conductors"), |a| {
+                    &mut a.sheath.eps_r
+                }),
+                (plain("sheath.tan_delta", "Loss tangent", 0.0001, "Of the sheath between the conductors"), |a| {
+                    &mut a.sheath.tan_delta
+                }),
+            ],
+        ),
+    ]
+}
+
+/// Draws the panel.
+pub(super) fn ui(ui: &mut Ui, antenna: &AntennaSpec, state: &mut UiState, out: &mut Outbox) {
+    let refused = state.refused.clone();
+    let refused = Refused(refused.as_ref());
+    for (title, numbers) in groups() {
+        section(ui, title, true, |ui| {
+            rows(ui, title, |ui| {
+                for (number, access) in &numbers {
+                    let mut new = antenna.clone();
+                    let value = *access(&mut new);
+                    number.row(ui, value, refused, out, |v| {
+                        *access(&mut new) = v;
+                        Edit::SetAntenna(new)
+                    });
+                }
+                if title == "Coaxial line" {
+                    segments(ui, antenna, refused, out);
+                }
+            });
+        });
+    }
+    section(ui, "First guess", true, |ui| guess(ui, antenna, state, refused, out));
+}
+
+fn segments(ui: &mut Ui, antenna: &AntennaSpec, refused: Refused<'_>, out: &mut Outbox) {
+    let tip = "Straight sides of the polygon that stands for the circle";
+    let fields: [(&'static str, &'static str, AccessCount); 2] = [
+        ("pin_segments", "Pin sides", |a| &mut a.pin_segments),
+        ("coax_segments", "Coax sides", |a| &mut a.coax_segments),
+    ];
+    for (place, label, access) in fields {
+        let mut new = antenna.clone();
+        let value = *access(&mut new) as f64;
+        Number::new(place, label, "", 0.1).count().tip(tip).row(ui, value, refused, out, |v| {
+            *access(&mut new) = v.round().clamp(0.0, 1e4) as usize;
+            Edit::SetAntenna(new)
+        });
+    }
+}
+
+fn guess(ui: &mut Ui, antenna: &AntennaSpec, state: &mut UiState, refused: Refused<'_>, out: &mut Outbox) {
+    let freq = Number::new("guess_freq", "Frequency", "GHz", 0.05).tip("Wanted resonance");
+    let ohm = Number::new("guess_ohm", "Resistance", "Ω", 0.5).tip("Wanted input resistance at resonance");
+    let params = antenna.to_params();
+    let made = first_guess(state.guess_freq_ghz * GHZ, params.substrate, params.height, state.guess_ohm);
+    rows(ui, "guess", |ui| {
+        for (number, value) in [(freq, &mut state.guess_freq_ghz), (ohm, &mut state.guess_ohm)] {
+            if let (_, Some(new)) = number.show(ui, *value) {
+                *value = new;
+            }
+            ui.end_row();
+        }
+        if let Ok(guess) = &made {
+            for (label, text) in describe(guess) {
+                ui.label(label);
+                ui.label(text);
+                ui.end_row();
+            }
+        }
+    });
+    match made {
+        Ok(guess) => {
+            let tip = "Set width, length and inset to these numbers; the substrate stays";
+            if ui.button("Use these dimensions").on_hover_text(tip).clicked() {
+                // Typed numbers have few digits, so the guess gets no more than a tenth of a micrometre either.
+                let rounded = |value: f64| (to_mm(value) * 1e4).round() / 1e4;
+                let mut new = antenna.clone();
+                (new.width_mm, new.length_mm) = (rounded(guess.width), rounded(guess.length));
+                new.inset_mm = rounded(guess.inset);
+                out.edit("guess", Edit::SetAntenna(new));
+            }
+        }
+        Err(error) => {
+            ui.colored_label(Tokens::here(ui).error, RichText::new(error.to_string()).small());
+        }
+    }
+    refused.show_alone(ui, "guess");
+}
+
+fn describe(guess: &FirstGuess) -> [(&'static str, String); 4] {
+    [
+        ("Width W", format!("{:.3} mm", to_mm(guess.width))),
+        ("Length L", format!("{:.3} mm", to_mm(guess.length))),
+        ("Inset y0", format!("{:.3} mm", to_mm(guess.inset))),
+        ("Edge resistance", format!("{:.0} Ω", guess.edge_resistance)),
+    ]
+}

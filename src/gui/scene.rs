@@ -1,0 +1,297 @@
+//! From the session to a picture: which triangles, lines and handles, in which colours.
+//!
+//! Lists are made anew only when what they come from has changed; everything else is shared with the last picture, so
+//! that a drag uploads positions and nothing else.
+
+use super::session::{Pose, Session};
+use super::theme::Tokens;
+use super::ui_state::{Heat, UiState};
+use crate::antenna::{COAX, GROUND, PATCH, PIN, SUBSTRATE, flat_complex};
+use crate::geometry::{DVec3, Plc, RegionId, VertexId};
+use crate::pipeline::Fields;
+use crate::project::AntennaSpec;
+use crate::render::scene::{crease_edges, unique_edges};
+use crate::render::{
+    Array, ColorMap, Gizmo, GizmoPart, Grid, HandleState, Handles, Lines, Paint, Part, Rgba, Scalars, Scene, Surface,
+    Vec3,
+};
+use crate::units::to_mm;
+use egui::Color32;
+use std::sync::Arc;
+
+/// Folds sharper than this are drawn as outlines, degrees: more than a bent facet turns, less than a pin's polygon.
+const CREASE_DEG: f32 = 20.0;
+/// Least half range of the colour bar, percent: below it, rounding noise would be painted as blotches at rest.
+const LEAST_RANGE: f32 = 0.01;
+
+/// Makes scenes and keeps what can be used again.
+#[derive(Debug, Default)]
+pub(super) struct SceneBuilder {
+    /// Triangles of each region and outlines, of the complex at this address.
+    shape: Option<(Arc<Plc>, Shape)>,
+    /// The flat antenna, shown until the first answer.
+    drawn: Option<(AntennaSpec, Arc<Plc>)>,
+    /// By the answer's number and the complex's address.
+    positions: Option<((u64, usize), Array<Vec3>)>,
+    heat: Option<(u64, Heat, Heated)>,
+    cage: Option<(u64, CageShape)>,
+    states: Option<(Vec<HandleState>, Array<HandleState>)>,
+}
+
+#[derive(Clone, Debug)]
+struct Shape {
+    parts: Vec<(String, Array<[u32; 3]>)>,
+    /// Vertices of the patch's two planes, not of its thin walls, which the bend itself strains: they set the range of
+    /// the colour bar.
+    patch_planes: Array<u32>,
+    creases: Array<[u32; 2]>,
+}
+
+/// A scalar field in percent and its greatest magnitude on the patch.
+#[derive(Clone, Debug)]
+struct Heated {
+    values: Array<f32>,
+    greatest: f32,
+}
+
+#[derive(Clone, Debug)]
+struct CageShape {
+    positions: Array<Vec3>,
+    handles: Array<Vec3>,
+    edges: Array<[u32; 2]>,
+}
+
+/// What is under the pointer or being dragged.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Hot {
+    pub(super) vertex: Option<u32>,
+    pub(super) gizmo: Option<GizmoPart>,
+}
+
+/// Positions in millimetres as the renderer takes them.
+pub(super) fn to_picture(points: &[DVec3]) -> Vec<Vec3> {
+    points.iter().map(|p| (*p * to_mm(1.0)).as_vec3()).collect()
+}
+
+/// A colour as the renderer takes it.
+pub(super) fn rgba(color: Color32) -> Rgba {
+    color.to_srgba_unmultiplied()
+}
+
+impl SceneBuilder {
+    /// Makes the picture of a session.
+    pub(super) fn scene(
+        &mut self,
+        session: &Session,
+        pose: Option<&Pose>,
+        state: &UiState,
+        tokens: &Tokens,
+        hot: Hot,
+    ) -> Scene {
+        let mut scene = Scene { background: rgba(tokens.viewport), ..Scene::default() };
+        let mut lowest = 0.0_f32;
+        if let Some((surface, creases)) = self.antenna(session, state, tokens) {
+            lowest = surface.positions.iter().map(|p| p.z).fold(lowest, f32::min);
+            scene.lines.push(creases);
+            scene.surfaces.push(surface);
+        }
+        if let Some(pose) = pose.filter(|_| state.shows_cage) {
+            let cage = self.cage(pose);
+            lowest = cage.positions.iter().map(|p| p.z).fold(lowest, f32::min);
+            let [r, g, b, _] = rgba(tokens.cage);
+            scene.lines.push(Lines {
+                positions: cage.positions,
+                edges: cage.edges,
+                color: [r, g, b, 200],
+                width: 1.1,
+                hidden: 0.35,
+            });
+            scene.gizmo = gizmo(&cage.handles, state, tokens, hot);
+            scene.handles = Some(self.handles(cage.handles, state, tokens, hot));
+        }
+        let [r, g, b, _] = rgba(tokens.grid);
+        let axes = [rgba(tokens.axes[0]), rgba(tokens.axes[1])];
+        // A little below everything, in steps, so that it does not tremble with a drag.
+        let z = (lowest / 5.0).floor() * 5.0 - 1.0;
+        scene.grid = Some(Grid { z, spacing: 1.0, color: [r, g, b, 110], axes });
+        scene
+    }
+
+    /// Half range of the colour bar in percent, if something is painted.
+    pub(super) fn range(&self, state: &UiState) -> Option<f32> {
+        let (_, heat, heated) = self.heat.as_ref()?;
+        (*heat == state.heat).then(|| state.heat_range.unwrap_or(heated.greatest).max(LEAST_RANGE))
+    }
+
+    fn antenna(&mut self, session: &Session, state: &UiState, tokens: &Tokens) -> Option<(Surface, Lines)> {
+        let drawn = if session.shown().is_none() { self.drawn_flat(&session.project().antenna) } else { None };
+        let (serial, flat, points, fields) = match (session.shown(), &drawn) {
+            (Some(s), _) => (s.serial, Arc::clone(&s.deformed.flat), &s.deformed.positions, Some(&s.deformed.fields)),
+            (None, Some(flat)) => (0, Arc::clone(flat), &flat.vertices, None),
+            (None, None) => return None,
+        };
+        let key = (serial, Arc::as_ptr(&flat) as usize);
+        if self.positions.as_ref().is_none_or(|(k, _)| *k != key) {
+            self.positions = Some((key, Array::new(to_picture(points))));
+        }
+        let positions = self.positions.as_ref()?.1.clone();
+        let shape = self.shape(&flat);
+        let scalars = fields.and_then(|fields| self.scalars(serial, fields, &shape, state));
+        let see_through = state.sees_through;
+        let parts = shape.parts.iter().map(|(name, triangles)| {
+            let carried = matches!(name.as_str(), SUBSTRATE | PATCH | GROUND);
+            let paint = if scalars.is_some() && carried { Paint::Heat } else { paint_of(name, tokens) };
+            let opacity = if see_through && name == SUBSTRATE { 0.35 } else { 1.0 };
+            Part { opacity, ..Part::new(triangles.clone(), paint) }
+        });
+        let surface = Surface { positions: positions.clone(), parts: parts.collect(), scalars };
+        let [r, g, b, _] = rgba(tokens.crease);
+        let creases = Lines { positions, edges: shape.creases.clone(), color: [r, g, b, 190], width: 1.0, hidden: 0.0 };
+        Some((surface, creases))
+    }
+
+    fn drawn_flat(&mut self, antenna: &AntennaSpec) -> Option<Arc<Plc>> {
+        if self.drawn.as_ref().is_none_or(|(spec, _)| spec != antenna) {
+            let plc = flat_complex(&antenna.to_params()).ok()?;
+            self.drawn = Some((antenna.clone(), Arc::new(plc)));
+        }
+        self.drawn.as_ref().map(|(_, plc)| Arc::clone(plc))
+    }
+
+    fn shape(&mut self, flat: &Arc<Plc>) -> Shape {
+        let is_same = self.shape.as_ref().is_some_and(|(plc, _)| Arc::ptr_eq(plc, flat));
+        if !is_same {
+            self.shape = Some((Arc::clone(flat), Shape::of(flat)));
+        }
+        self.shape.as_ref().map(|(_, shape)| shape.clone()).unwrap_or_else(|| Shape::of(flat))
+    }
+
+    fn scalars(&mut self, serial: u64, fields: &Fields, shape: &Shape, state: &UiState) -> Option<Scalars> {
+        let source = match state.heat {
+            Heat::None => return None,
+            Heat::Area => &fields.area_ratio,
+            Heat::MaxStrain => &fields.stretch_max,
+            Heat::MinStrain => &fields.stretch_min,
+        };
+        if self.heat.as_ref().is_none_or(|(s, h, _)| *s != serial || *h != state.heat) {
+            let values: Vec<f32> = source.iter().map(|v| (100.0 * (v - 1.0)) as f32).collect();
+            let on_patch = shape.patch_planes.iter().filter_map(|&v| values.get(v as usize)).filter(|v| v.is_finite());
+            let greatest = on_patch.fold(0.0_f32, |m, v| m.max(v.abs()));
+            self.heat = Some((serial, state.heat, Heated { values: Array::new(values), greatest }));
+        }
+        let range = self.range(state)?;
+        let values = self.heat.as_ref()?.2.values.clone();
+        Some(Scalars { values, range: [-range, range], map: ColorMap::CoolWarm })
+    }
+
+    fn cage(&mut self, pose: &Pose) -> CageShape {
+        if let Some((serial, shape)) = self.cage.as_ref().filter(|(s, _)| *s == pose.serial) {
+            debug_assert_eq!(*serial, pose.serial, "found by its serial");
+            return shape.clone();
+        }
+        let points = to_picture(&pose.vertices);
+        let cage = &pose.cage;
+        // An edge from bottom to top in the middle runs through the antenna and is no edge of the surface.
+        let on_surface = |e: &&[VertexId; 2]| {
+            let [from, to] = e.map(|v| cage.lattice[v.index()]);
+            let on_rim = (0..2).any(|k| from[k] == 0 || from[k] == cage.segments[k]);
+            from[2] == to[2] || on_rim
+        };
+        let edges: Vec<[u32; 2]> = cage.edges().iter().filter(on_surface).map(|e| e.map(|v| v.raw())).collect();
+        let handles = points[..pose.cage.n_handles().min(points.len())].to_vec();
+        let shape = CageShape { positions: Array::new(points), handles: Array::new(handles), edges: Array::new(edges) };
+        self.cage = Some((pose.serial, shape.clone()));
+        shape
+    }
+
+    fn handles(&mut self, positions: Array<Vec3>, state: &UiState, tokens: &Tokens, hot: Hot) -> Handles {
+        let state_of = |i: usize| {
+            let vertex = u32::try_from(i).ok();
+            if vertex.is_some_and(|v| state.selection.contains(&v)) {
+                HandleState::Selected
+            } else if vertex == hot.vertex {
+                HandleState::Hovered
+            } else {
+                HandleState::Normal
+            }
+        };
+        let states: Vec<HandleState> = (0..positions.len()).map(state_of).collect();
+        if self.states.as_ref().is_none_or(|(before, _)| *before != states) {
+            self.states = Some((states.clone(), Array::new(states)));
+        }
+        Handles {
+            positions,
+            states: self.states.as_ref().map(|(_, array)| array.clone()).unwrap_or_default(),
+            fills: tokens.handles.map(rgba),
+            outline: rgba(tokens.handle_rim),
+            radius: 3.6,
+            hidden: 0.25,
+        }
+    }
+}
+
+/// Arrows at the middle of the selection.
+pub(super) fn gizmo(handles: &[Vec3], state: &UiState, tokens: &Tokens, hot: Hot) -> Option<Gizmo> {
+    let selected: Vec<Vec3> = state.selection.iter().filter_map(|&v| handles.get(v as usize).copied()).collect();
+    if selected.is_empty() {
+        return None;
+    }
+    let center = selected.iter().sum::<Vec3>() / selected.len() as f32;
+    let [x, y, z] = tokens.axes.map(rgba);
+    Some(Gizmo {
+        center,
+        colors: [x, y, z, rgba(tokens.handles[2])],
+        hot: hot.gizmo,
+        hot_color: rgba(tokens.handles[1]),
+    })
+}
+
+/// The material look of a region.
+fn paint_of(name: &str, tokens: &Tokens) -> Paint {
+    match name {
+        PATCH => Paint::Metal(rgba(tokens.patch)),
+        GROUND => Paint::Metal(rgba(tokens.ground)),
+        PIN => Paint::Metal(rgba(tokens.pin)),
+        COAX => Paint::Matt(rgba(tokens.coax)),
+        _ => Paint::Matt(rgba(tokens.substrate)),
+    }
+}
+
+impl Shape {
+    /// Sorts the facets by the region that is seen, and finds the outlines.
+    fn of(flat: &Plc) -> Self {
+        let solids: Vec<(RegionId, String)> = flat.solids().map(|(id, r)| (id, r.name.clone())).collect();
+        let mut parts: Vec<(String, Vec<[u32; 3]>)> = solids.iter().map(|(_, n)| (n.clone(), Vec::new())).collect();
+        let rank = |id: RegionId| solids.iter().position(|(s, _)| *s == id);
+        let mut all = Vec::with_capacity(flat.facets.len());
+        for facet in &flat.facets {
+            let triangle = facet.vertices.map(|v| v.raw());
+            all.push(triangle);
+            // Where two solids touch, the metal is the one that is seen through a translucent substrate.
+            let sides = [facet.back, facet.front].into_iter().filter_map(rank);
+            if let Some(part) = sides.max_by_key(|&i| precedence(&solids[i].1)) {
+                parts[part].1.push(triangle);
+            }
+        }
+        let parts: Vec<(String, Array<[u32; 3]>)> =
+            parts.into_iter().map(|(name, triangles)| (name, Array::new(triangles))).collect();
+        let level = |t: &&[u32; 3]| {
+            let [a, b, c] = t.map(|v| flat.vertices[v as usize].z);
+            (a - b).abs().max((a - c).abs()) <= 0.0
+        };
+        let patch = parts.iter().filter(|(name, _)| name == PATCH).flat_map(|(_, triangles)| triangles.iter());
+        let patch_planes = Array::new(patch.filter(level).flatten().copied().collect::<Vec<u32>>());
+        let creases = crease_edges(&to_picture(&flat.vertices), &all, CREASE_DEG);
+        Self { parts, patch_planes, creases: Array::new(if creases.is_empty() { unique_edges(&all) } else { creases }) }
+    }
+}
+
+fn precedence(name: &str) -> u8 {
+    match name {
+        PATCH => 4,
+        PIN => 3,
+        GROUND => 2,
+        COAX => 1,
+        _ => 0,
+    }
+}

@@ -1,0 +1,181 @@
+//! The status line, and the messages of this session.
+
+use super::outbox::{Action, Outbox};
+use super::session::Session;
+use super::theme::Tokens;
+use super::ui_state::UiState;
+use egui::{ProgressBar, RichText, ScrollArea, Spinner, Ui};
+use egui_notify::{Anchor, Toasts};
+use std::time::Duration;
+
+/// Messages kept.
+const MAX_MESSAGES: usize = 200;
+/// Letters of a line of a notification: longer lines would leave the window.
+const TOAST_COLUMNS: usize = 60;
+
+/// How much a message matters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Weight {
+    Good,
+    Warning,
+    Error,
+}
+
+/// Messages: shown once as a notification, then kept in a list.
+pub(super) struct Messages {
+    list: Vec<(Weight, String)>,
+    toasts: Toasts,
+}
+
+impl Default for Messages {
+    /// Notifications appear at the lower left, over the status line: there they hide no figures.
+    fn default() -> Self {
+        let toasts = Toasts::new().with_anchor(Anchor::BottomLeft).with_margin(egui::vec2(8.0, 34.0));
+        Self { list: Vec::new(), toasts }
+    }
+}
+
+impl std::fmt::Debug for Messages {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Messages").field("list", &self.list).finish_non_exhaustive()
+    }
+}
+
+impl Messages {
+    /// Says something: what happened, where, what to try.
+    pub(super) fn say(&mut self, weight: Weight, text: &str) {
+        let broken = break_lines(text, TOAST_COLUMNS);
+        let (toast, seconds) = match weight {
+            Weight::Good => (self.toasts.success(broken), 5),
+            Weight::Warning => (self.toasts.warning(broken), 8),
+            Weight::Error => (self.toasts.error(broken), 12),
+        };
+        toast.duration(Some(Duration::from_secs(seconds))).closable(true);
+        if self.list.len() == MAX_MESSAGES {
+            self.list.remove(0);
+        }
+        self.list.push((weight, text.to_owned()));
+    }
+
+    /// Draws the notifications.
+    pub(super) fn show_toasts(&mut self, ctx: &egui::Context) {
+        self.toasts.show(ctx);
+    }
+
+    /// The list, oldest first.
+    #[cfg(test)]
+    pub(super) fn texts(&self) -> impl DoubleEndedIterator<Item = &str> {
+        self.list.iter().map(|(_, text)| text.as_str())
+    }
+
+    /// Draws the list.
+    pub(super) fn log(&self, ui: &mut Ui) {
+        let tokens = Tokens::here(ui);
+        if self.list.is_empty() {
+            ui.label(RichText::new("No messages in this session.").weak());
+            return;
+        }
+        ScrollArea::vertical().stick_to_bottom(true).auto_shrink(false).show(ui, |ui| {
+            for (weight, text) in &self.list {
+                let color = match weight {
+                    Weight::Good => tokens.good,
+                    Weight::Warning => tokens.warning,
+                    Weight::Error => tokens.error,
+                };
+                ui.label(RichText::new(text).color(color));
+            }
+        });
+    }
+}
+
+/// Breaks a text at spaces into lines of at most `columns` letters where its words allow.
+fn break_lines(text: &str, columns: usize) -> String {
+    let mut lines = vec![String::new()];
+    for word in text.split_whitespace() {
+        let last = lines.len() - 1;
+        if !lines[last].is_empty() && lines[last].chars().count() + 1 + word.chars().count() > columns {
+            lines.push(word.to_owned());
+        } else {
+            if !lines[last].is_empty() {
+                lines[last].push(' ');
+            }
+            lines[last].push_str(word);
+        }
+    }
+    lines.join("\n")
+}
+
+/// Draws the status line.
+pub(super) fn ui(ui: &mut Ui, session: &Session, messages: &Messages, state: &mut UiState, out: &mut Outbox) {
+    let tokens = Tokens::here(ui);
+    ui.horizontal(|ui| {
+        if session.is_busy() && !session.in_gesture() {
+            busy(ui, session, out);
+        } else if let Some(message) = session.refusal() {
+            let text = RichText::new(format!("⚠ {message}")).color(tokens.error);
+            ui.add(egui::Label::new(text).truncate()).on_hover_text(message);
+        } else if session.in_gesture() {
+            ui.label(RichText::new("Preview: computed in full when you let go").color(tokens.weak));
+        } else if session.finished().is_some() {
+            ui.label(RichText::new("Ready").color(tokens.good));
+        } else {
+            ui.label(RichText::new("Stopped: change something to compute again").color(tokens.warning));
+        }
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            let count = messages.list.len();
+            let text = if count == 1 { "1 message".to_owned() } else { format!("{count} messages") };
+            if ui.selectable_label(state.shows_log, text).on_hover_text("Show the messages of this session").clicked() {
+                state.shows_log = !state.shows_log;
+            }
+            if let Some(shown) = session.shown() {
+                let deformed = &shown.deformed;
+                ui.separator();
+                ui.label(duration(deformed.seconds)).on_hover_text("Time that the last computation took");
+                ui.separator();
+                let (vertices, triangles) = (deformed.positions.len(), deformed.flat.facets.len());
+                let tip = "The deformed surface: a triangle between two parts counts once";
+                ui.label(format!("{vertices} vertices, {triangles} triangles")).on_hover_text(tip);
+            }
+        });
+    });
+}
+
+fn busy(ui: &mut Ui, session: &Session, out: &mut Outbox) {
+    match session.progress() {
+        Some(p) if p.total > 0 => {
+            let part = p.done as f32 / p.total as f32;
+            let bar = ProgressBar::new(part).desired_width(140.0).desired_height(12.0);
+            ui.add(bar);
+            ui.label(p.phase);
+        }
+        Some(p) => {
+            ui.add(Spinner::new().size(14.0));
+            ui.label(p.phase);
+        }
+        None => {
+            ui.add(Spinner::new().size(14.0));
+            ui.label("Computing");
+        }
+    }
+    if ui.small_button("Stop").on_hover_text("Stop computing; what is shown stays").clicked() {
+        out.push(Action::StopWork);
+    }
+}
+
+fn duration(seconds: f64) -> String {
+    if seconds < 1.0 { format!("{:.0} ms", seconds * 1e3) } else { format!("{seconds:.1} s") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_messages_are_broken_between_words() {
+        let text = "radius 2.0000 mm turns the cage inside out: choose more than 4.6100 mm";
+        let broken = break_lines(text, 30);
+        assert!(broken.lines().all(|l| l.len() <= 30), "{broken}");
+        assert_eq!(broken.replace('\n', " "), text, "nothing is lost");
+        assert_eq!(break_lines("averyveryverylongword", 5), "averyveryverylongword", "words stay whole");
+    }
+}

@@ -1,0 +1,355 @@
+//! The 3-D view: camera, picking and dragging cage vertices.
+//!
+//! What a drag does is decided where the button went down. A vertex or an arrow of the gizmo moves the selection, one
+//! undo step per drag, live; empty ground turns the view (left), slides it (middle, right or Shift) or draws a
+//! selection box (Ctrl, or after B). Places are points from the top left of the view.
+
+use super::outbox::{Action, Outbox};
+use super::overlay;
+use super::paint::ScenePaint;
+use super::scene::{Hot, SceneBuilder, gizmo, to_picture};
+use super::session::{Pose, Session, move_edit};
+use super::theme::Tokens;
+use super::ui_state::UiState;
+use crate::geometry::DVec3;
+use crate::render::drag::{Motion, displacement};
+use crate::render::pick::{gizmo_at, handle_at, handles_in};
+use crate::render::{Gizmo, GizmoPart, Scene, Vec2, Vec3, View};
+use egui::{CursorIcon, Key, Modifiers, PointerButton, Pos2, Rect, Response, Role, Sense, Ui, WidgetInfo};
+
+/// How far from a vertex a press still grabs it, points: a little more than its disc.
+const GRAB_RADIUS: f32 = 9.0;
+/// Room around what is fitted, as a factor: vertices at the very border are hard to grab.
+const FIT_ROOM: f32 = 1.12;
+/// Zoom per point scrolled: a usual wheel click (50 points) changes the size by a tenth.
+const ZOOM_PER_POINT: f32 = 0.002;
+
+/// What the pointer is doing.
+#[derive(Clone, Debug, Default)]
+enum Drag {
+    #[default]
+    Nothing,
+    Orbit,
+    Pan,
+    Box {
+        from: Vec2,
+    },
+    Move(Move),
+    /// Called off; waits for the button to come up.
+    Over,
+}
+
+/// Vertices being moved.
+#[derive(Clone, Debug)]
+struct Move {
+    /// Where the motion is measured, mm, and the press.
+    grabbed: Vec3,
+    from: Vec2,
+    /// What the press says, and what a key says instead.
+    free: Motion,
+    lock: Option<Lock>,
+    /// Offsets of the moved vertices at the start, mm.
+    start: Vec<(u32, [f64; 3])>,
+    delta: DVec3,
+}
+
+/// Axis or plane that a key has bound the motion to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Lock {
+    pub(super) axis: usize,
+    /// The plane across the axis instead of the axis.
+    pub(super) across: bool,
+}
+
+impl Lock {
+    fn motion(self) -> Motion {
+        let axis = Vec3::AXES[self.axis];
+        if self.across { Motion::Plane(axis) } else { Motion::Axis(axis) }
+    }
+}
+
+/// What the view remembers between frames.
+#[derive(Debug, Default)]
+pub(super) struct Viewport {
+    drag: Drag,
+    hot: Hot,
+    builder: SceneBuilder,
+}
+
+/// What a frame of the view works with.
+struct Frame<'a> {
+    session: &'a Session,
+    pose: Option<&'a Pose>,
+    /// Handles in picture units.
+    handles: &'a [Vec3],
+    gizmo: Option<Gizmo>,
+    rect: Rect,
+}
+
+impl Frame<'_> {
+    /// The part of the gizmo under a place, with the gizmo's center.
+    fn gizmo_at(&self, view: &View, at: Vec2) -> Option<(Vec3, GizmoPart)> {
+        let gizmo = self.gizmo.as_ref()?;
+        gizmo_at(view, gizmo, at).map(|part| (gizmo.center, part))
+    }
+
+    fn local(&self, at: Pos2) -> Vec2 {
+        let v = at - self.rect.min;
+        Vec2::new(v.x, v.y)
+    }
+
+    fn view(&self, ui: &Ui, state: &UiState) -> View {
+        let size = Vec2::new(self.rect.width(), self.rect.height());
+        View { camera: state.camera, size, scale: ui.ctx().pixels_per_point() }
+    }
+}
+
+impl Viewport {
+    /// Draws the view and turns what the pointer does into wishes.
+    pub(super) fn ui(
+        &mut self,
+        ui: &mut Ui,
+        session: &Session,
+        pose: Option<&Pose>,
+        state: &mut UiState,
+        out: &mut Outbox,
+    ) {
+        let rect = ui.available_rect_before_wrap();
+        let response = ui.allocate_rect(rect, Sense::click_and_drag());
+        response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "3-D view"));
+        let handles = match pose.filter(|_| state.shows_cage) {
+            Some(pose) => to_picture(&pose.vertices[..pose.cage.n_handles().min(pose.vertices.len())]),
+            None => Vec::new(),
+        };
+        state.selection.retain(|&v| pose.is_none_or(|p| (v as usize) < p.cage.n_handles()));
+        let gizmo = gizmo(&handles, state, Tokens::here(ui), self.hot);
+        let frame = Frame { session, pose, handles: &handles, gizmo, rect };
+        if std::mem::take(&mut state.fit) {
+            self.fit(ui, &frame, state);
+        }
+        self.hover(ui, &response, &frame, state);
+        self.start(ui, &response, &frame, state, out);
+        self.go_on(ui, &response, &frame, state, out);
+        self.click(ui, &response, &frame, state);
+        self.zoom(ui, &response, &frame, state);
+        let scene = self.draw(ui, &frame, state);
+        self.overlay(ui, &response, &frame, state, &scene);
+    }
+
+    /// True while the pointer holds something.
+    pub(super) fn is_dragging(&self) -> bool {
+        !matches!(self.drag, Drag::Nothing)
+    }
+
+    fn fit(&mut self, ui: &Ui, frame: &Frame<'_>, state: &mut UiState) {
+        let scene = self.builder.scene(frame.session, frame.pose, state, Tokens::here(ui), self.hot);
+        let surfaces = scene.surfaces.iter().flat_map(|s| s.positions.iter());
+        let start = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        let around = surfaces.chain(frame.handles).fold(start, |(lo, hi), &p| (lo.min(p), hi.max(p)));
+        let mut view = frame.view(ui, state);
+        view.fit(around.0, around.1);
+        view.camera.distance *= FIT_ROOM;
+        state.camera = view.camera;
+    }
+
+    fn hover(&mut self, ui: &Ui, response: &Response, frame: &Frame<'_>, state: &UiState) {
+        if self.is_dragging() {
+            return;
+        }
+        self.hot = Hot::default();
+        let Some(at) = response.hover_pos().filter(|_| response.contains_pointer()) else { return };
+        let (view, at) = (frame.view(ui, state), frame.local(at));
+        self.hot.gizmo = frame.gizmo_at(&view, at).map(|(_, part)| part);
+        if self.hot.gizmo.is_none() {
+            self.hot.vertex = handle_at(&view, frame.handles, at, GRAB_RADIUS).and_then(|v| u32::try_from(v).ok());
+        }
+        if self.hot.gizmo.is_some() || self.hot.vertex.is_some() {
+            ui.ctx().set_cursor_icon(CursorIcon::Grab);
+        } else if state.selects_by_box {
+            ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
+        }
+    }
+
+    /// Decides what a drag does, by what lies where the button went down.
+    fn start(&mut self, ui: &Ui, response: &Response, frame: &Frame<'_>, state: &mut UiState, out: &mut Outbox) {
+        if !response.drag_started() {
+            return;
+        }
+        let Some(origin) = ui.input(|i| i.pointer.press_origin()) else { return };
+        let (from, view, modifiers) = (frame.local(origin), frame.view(ui, state), ui.input(|i| i.modifiers));
+        if !response.drag_started_by(PointerButton::Primary) {
+            self.drag = Drag::Pan;
+            return;
+        }
+        let part = frame.gizmo_at(&view, from);
+        let vertex = handle_at(&view, frame.handles, from, GRAB_RADIUS);
+        self.drag = if state.selects_by_box || modifiers.command {
+            state.selects_by_box = false;
+            Drag::Box { from }
+        } else if let Some((center, part)) = part {
+            self.hot.gizmo = Some(part);
+            begin_move(frame, state, center, from, part.axis().map_or(Motion::Screen, Motion::Axis), out)
+        } else if let Some(vertex) = vertex {
+            let grabbed = frame.handles[vertex];
+            let vertex = u32::try_from(vertex).unwrap_or(u32::MAX);
+            if !state.selection.contains(&vertex) {
+                if !modifiers.shift {
+                    state.selection.clear();
+                }
+                state.selection.insert(vertex);
+            }
+            self.hot.vertex = Some(vertex);
+            begin_move(frame, state, grabbed, from, Motion::Screen, out)
+        } else if modifiers.shift {
+            Drag::Pan
+        } else {
+            Drag::Orbit
+        };
+    }
+
+    fn go_on(&mut self, ui: &Ui, response: &Response, frame: &Frame<'_>, state: &mut UiState, out: &mut Outbox) {
+        let pointer = response.interact_pointer_pos().map(|p| frame.local(p));
+        let mut view = frame.view(ui, state);
+        match &mut self.drag {
+            Drag::Nothing => return,
+            Drag::Over => {}
+            Drag::Orbit => state.camera.orbit(to_render(response.drag_delta())),
+            Drag::Pan => {
+                view.pan(to_render(response.drag_delta()));
+                state.camera = view.camera;
+            }
+            Drag::Box { from } => {
+                if ui.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape)) {
+                    self.drag = Drag::Over;
+                } else if let Some(to) = pointer.filter(|_| response.drag_stopped()) {
+                    let found = handles_in(&view, frame.handles, *from, to);
+                    if !ui.input(|i| i.modifiers.shift) {
+                        state.selection.clear();
+                    }
+                    state.selection.extend(found.into_iter().filter_map(|v| u32::try_from(v).ok()));
+                }
+            }
+            Drag::Move(moving) => {
+                ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
+                if ui.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape)) {
+                    out.push(Action::Cancel);
+                    self.drag = Drag::Over;
+                } else {
+                    moving.go_on(ui, &view, pointer, out);
+                }
+            }
+        }
+        if response.drag_stopped() || !ui.input(|i| i.pointer.any_down()) {
+            if matches!(self.drag, Drag::Move(_)) {
+                out.push(Action::End);
+            }
+            self.drag = Drag::Nothing;
+        }
+    }
+
+    fn click(&self, ui: &Ui, response: &Response, frame: &Frame<'_>, state: &mut UiState) {
+        let Some(at) = response.interact_pointer_pos().filter(|_| response.clicked()) else { return };
+        response.request_focus();
+        let (view, at, shift) = (frame.view(ui, state), frame.local(at), ui.input(|i| i.modifiers.shift));
+        let on_gizmo = frame.gizmo_at(&view, at).is_some_and(|(_, part)| part != GizmoPart::Center);
+        match handle_at(&view, frame.handles, at, GRAB_RADIUS).and_then(|v| u32::try_from(v).ok()) {
+            Some(vertex) if shift && state.selection.remove(&vertex) => {}
+            Some(vertex) if shift => {
+                state.selection.insert(vertex);
+            }
+            Some(vertex) => state.selection = [vertex].into(),
+            None if !shift && !on_gizmo => state.selection.clear(),
+            None => {}
+        }
+    }
+
+    fn zoom(&self, ui: &Ui, response: &Response, frame: &Frame<'_>, state: &mut UiState) {
+        let Some(at) = response.hover_pos().filter(|_| response.contains_pointer()) else { return };
+        let (scroll, pinch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
+        let factor = pinch * (ZOOM_PER_POINT * scroll).exp();
+        let mut view = frame.view(ui, state);
+        view.zoom(factor, frame.local(at));
+        state.camera = view.camera;
+    }
+
+    fn draw(&mut self, ui: &Ui, frame: &Frame<'_>, state: &UiState) -> Scene {
+        let tokens = Tokens::here(ui);
+        let scene = self.builder.scene(frame.session, frame.pose, state, tokens, self.hot);
+        ui.painter().rect_filled(frame.rect, 0.0, tokens.viewport);
+        let paint = ScenePaint { scene: scene.clone(), view: frame.view(ui, state) };
+        ui.painter().add(egui_wgpu::Callback::new_paint_callback(frame.rect, paint));
+        scene
+    }
+
+    fn overlay(&self, ui: &Ui, response: &Response, frame: &Frame<'_>, state: &UiState, scene: &Scene) {
+        let view = frame.view(ui, state);
+        name_vertices(ui, response, frame, state, &view);
+        let range = self.builder.range(state);
+        overlay::draw(ui, frame.rect, &view, state, range);
+        match &self.drag {
+            Drag::Box { from } => {
+                if let Some(to) = response.interact_pointer_pos() {
+                    overlay::selection_box(ui, frame.rect.min + egui::vec2(from.x, from.y), to);
+                }
+            }
+            Drag::Move(moving) => overlay::move_hint(ui, frame.rect, moving.delta, moving.lock),
+            _ if state.selects_by_box => {
+                overlay::hint(ui, frame.rect, "Drag a box around vertices; Shift adds, B ends")
+            }
+            Drag::Nothing => {
+                let pointer = response.hover_pos().filter(|_| response.contains_pointer());
+                let hovered = self.hot.vertex.filter(|_| pointer.is_some());
+                if let (Some(vertex), Some(pose)) = (hovered, frame.pose) {
+                    overlay::vertex_hint(ui, frame.rect, vertex, pose);
+                } else if let (Some(at), Some(surface)) = (pointer, scene.surfaces.first()) {
+                    overlay::value_hint(ui, &view, surface, at, frame.local(at), state);
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+fn to_render(v: egui::Vec2) -> Vec2 {
+    Vec2::new(v.x, v.y)
+}
+
+fn begin_move(frame: &Frame<'_>, state: &UiState, grabbed: Vec3, from: Vec2, free: Motion, out: &mut Outbox) -> Drag {
+    let edits = &frame.session.project().hand_edits;
+    let start = state.selection.iter().map(|&v| (v, edits.get(&v).copied().unwrap_or_default())).collect();
+    out.push(Action::Begin);
+    Drag::Move(Move { grabbed, from, free, lock: None, start, delta: DVec3::ZERO })
+}
+
+impl Move {
+    fn go_on(&mut self, ui: &Ui, view: &View, pointer: Option<Vec2>, out: &mut Outbox) {
+        for (axis, key) in [Key::X, Key::Y, Key::Z].into_iter().enumerate() {
+            let across = ui.input(|i| i.modifiers.shift);
+            if ui.input_mut(|i| i.consume_key(Modifiers::SHIFT, key) || i.consume_key(Modifiers::NONE, key)) {
+                let lock = Lock { axis, across };
+                self.lock = (self.lock != Some(lock)).then_some(lock);
+            }
+        }
+        let motion = self.lock.map_or(self.free, Lock::motion);
+        let moved = pointer.and_then(|to| displacement(view, self.grabbed, motion, self.from, to));
+        if let Some(delta) = moved.map(|d| d.as_dvec3()).filter(|d| d.is_finite() && *d != self.delta) {
+            self.delta = delta;
+            out.edit("hand edits", move_edit(&self.start, delta));
+        }
+    }
+}
+
+/// Gives each vertex a name for screen readers and tests; the view itself handles the pointer.
+fn name_vertices(ui: &Ui, response: &Response, frame: &Frame<'_>, state: &UiState, view: &View) {
+    for (i, &handle) in frame.handles.iter().enumerate() {
+        let Some(seen) = view.project(handle) else { continue };
+        let at = frame.rect.min + egui::vec2(seen.at.x, seen.at.y);
+        if !frame.rect.contains(at) {
+            continue;
+        }
+        let place = Rect::from_center_size(at, egui::vec2(12.0, 12.0));
+        let named = ui.interact(place, response.id.with(i), Sense::hover());
+        let selected = u32::try_from(i).is_ok_and(|v| state.selection.contains(&v));
+        named.widget_info(|| WidgetInfo::selected(Role::GraphicsSymbol, true, selected, format!("Cage vertex {i}")));
+    }
+}
