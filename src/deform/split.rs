@@ -1,15 +1,15 @@
 //! Splits edges until the faceted surface follows the smooth map, conforming across every interface.
 //!
 //! An edge is marked when the map leaves the straight image of the edge by more than the tolerance at a quarter, half
-//! or three quarters of it (the midpoint alone misses S-shaped edges). A marked edge gets one vertex at its flat
-//! midpoint, shared by all facets around it whatever parts they belong to, and each facet is divided by its number of
+//! or three quarters of it (the midpoint alone misses S-shaped edges); with it the longest edge of each facet at it, so
+//! that facets do not get ever thinner \[RIV84\]. A marked edge gets one vertex at its flat midpoint, shared by all facets around it whatever parts they belong to, and each facet is divided by its number of
 //! marked edges: one, bisect; two, cut the corner and divide the rest by the shorter posed diagonal; three, four
 //! triangles. This repeats until no edge is marked.
 
 use super::DeformError;
 use crate::geometry::{DVec3, Facet, Plc, VertexId};
 use crate::task::Task;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// Limits of edge splitting.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,15 +64,19 @@ pub fn split(
     loop {
         task.check()?;
         let fresh = fresh_edges(&surface.flat.facets, &straight);
-        let midpoints = mark(&surface, &fresh, &map, settings.tolerance)?;
-        let mut middle: HashMap<[VertexId; 2], VertexId> = HashMap::new();
-        for (edge, midpoint) in fresh.iter().zip(midpoints) {
+        let mut marked = Vec::new();
+        for (edge, midpoint) in fresh.iter().zip(mark(&surface, &fresh, &map, settings.tolerance)?) {
             straight.insert(*edge, midpoint.is_none());
-            if let Some((flat_point, position)) = midpoint {
-                middle.insert(*edge, VertexId::new(surface.positions.len()));
-                surface.flat.vertices.push(flat_point);
-                surface.positions.push(position);
-            }
+            marked.extend(midpoint.map(|(flat_point, position)| (*edge, flat_point, position)));
+        }
+        let longest = longest_edges(&surface.flat, marked.iter().map(|m| m.0).collect());
+        let middles: Vec<DVec3> = longest.iter().map(|&e| middle_of(&surface.flat.vertices, e)).collect();
+        marked.extend(longest.iter().zip(&middles).zip(map(&middles)?).map(|((e, p), x)| (*e, *p, x)));
+        let mut middle: HashMap<[VertexId; 2], VertexId> = HashMap::new();
+        for (edge, flat_point, position) in marked {
+            middle.insert(edge, VertexId::new(surface.positions.len()));
+            surface.flat.vertices.push(flat_point);
+            surface.positions.push(position);
         }
         if middle.is_empty() {
             return Ok(surface);
@@ -89,6 +93,37 @@ pub fn split(
 
 fn key(a: VertexId, b: VertexId) -> [VertexId; 2] {
     [a.min(b), a.max(b)]
+}
+
+fn middle_of(points: &[DVec3], [a, b]: [VertexId; 2]) -> DVec3 {
+    points[a.index()].midpoint(points[b.index()])
+}
+
+/// The longest flat edges that must be split beside the marked ones, ascending: wherever a facet is divided, its longest
+/// edge is too \[RIV84\]. Bisecting shorter edges alone would leave ever thinner facets, and never come to an end where
+/// such a facet's long edge keeps being marked.
+fn longest_edges(flat: &Plc, mut marked: HashSet<[VertexId; 2]>) -> Vec<[VertexId; 2]> {
+    let length = |[a, b]: [VertexId; 2]| flat.vertices[a.index()].distance_squared(flat.vertices[b.index()]);
+    let edges = |f: &Facet| {
+        let [a, b, c] = f.vertices;
+        [key(a, b), key(b, c), key(c, a)]
+    };
+    let mut added = Vec::new();
+    loop {
+        let before = added.len();
+        for facet in &flat.facets {
+            let sides = edges(facet);
+            if sides.iter().any(|e| marked.contains(e)) {
+                // Ties go to the smaller key, so that both facets at an edge agree.
+                let longest = sides.into_iter().max_by(|p, q| length(*p).total_cmp(&length(*q)).then(q.cmp(p)));
+                added.extend(longest.filter(|&e| marked.insert(e)));
+            }
+        }
+        if added.len() == before {
+            added.sort_unstable();
+            return added;
+        }
+    }
 }
 
 /// The edges that were not judged yet, ascending, each once.
