@@ -17,7 +17,6 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("project", &["antenna", "cage", "geometry", "io", "units"]),
     ("render", &["geometry", "units"]),
     ("pipeline", &["antenna", "cage", "deform", "distortion", "geometry", "project", "task", "units"]),
-    ("study", &["antenna", "cage", "deform", "distortion", "geometry", "io", "project", "task", "units"]),
     (
         "cli",
         &[
@@ -30,7 +29,6 @@ const LAYERS: &[(&str, &[&str])] = &[
             "pipeline",
             "project",
             "render",
-            "study",
             "task",
             "units",
         ],
@@ -64,9 +62,9 @@ const OUTSIDE: &[(&str, &[&str])] = &[
     ("naga", &["render"]),
     ("anyhow", &["cli", "gui", "main"]),
     ("clap", &["cli", "main"]),
-    ("plotters", &["study", "cli"]),
+    ("plotters", &["cli"]),
     ("std::thread", &["pipeline", "gui"]),
-    ("std::fs", &["io", "project", "cli", "gui", "study"]),
+    ("std::fs", &["io", "project", "cli", "gui"]),
     ("println!", &["cli", "main"]),
     ("eprintln!", &["cli", "gui", "main"]),
 ];
