@@ -59,7 +59,7 @@ fn splitting(bencher: Bencher<'_, '_>, tolerance: f64) {
         Ok(points.iter().map(|p| p.with_z(p.z + 1e-3 * (p.x * 500.0).sin() * (p.y * 300.0).cos())).collect())
     };
     let settings = SplitSettings::with_tolerance(tolerance);
-    let vertices = split(flat.clone(), wave, settings, &Task::default()).expect("smooth").positions.len();
+    let vertices = split(flat.clone(), wave, settings, &Task::default()).expect("smooth").images.len();
     bencher
         .counter(ItemsCount::new(vertices))
         .with_inputs(|| flat.clone())

@@ -12,9 +12,11 @@
 //!
 //! Not handled: a feed whose line would run into the bent sheet itself (the crossing test of the surface finds it).
 
+use super::split::Image;
 use super::{DeformError, SmoothMap, Warp};
 use crate::geometry::{DMat2, DMat3, DVec2, DVec3};
 use crate::units::to_mm;
+use rayon::prelude::*;
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::f64::consts::TAU;
@@ -45,13 +47,15 @@ pub struct RigidFeed {
 const CONVERGED: f64 = 1e-9;
 /// Newton's method takes 3 to 4 steps for usual bends, some more where the line barely fits.
 const MAX_STEPS: usize = 24;
-/// Angles at which the shift on the rim is solved for first; see [`Rim`].
-const RIM_NODES: usize = 48;
+/// Angles at which the shift on the rim is solved for first; see [`Disc`].
+const RIM_NODES: usize = 24;
 /// Where the line barely fits, the shift is steep: the nodes are doubled up to this many.
 const MAX_RIM_NODES: usize = 768;
 /// Greatest last harmonics of the rim, relative to the outer radius: a fifth of a nanometre. What they leave out is a
 /// step in the map at the rim, which edge splitting would try to follow if it were near its tolerance.
 const RIM_TAIL: f64 = 1e-7;
+/// Angles of the ring at half the radius.
+const INNER_NODES: usize = 12;
 /// Longest step, in outer radii: a nearly upright sheet asks for steps out of the cage.
 const STRIDE: f64 = 0.3;
 /// The sheet stands along the axis, to rounding, where a flat area projects to less than this part of itself.
@@ -102,6 +106,29 @@ pub struct Placement {
     pub sweep: Vec<f64>,
 }
 
+impl FromIterator<Carried> for Placement {
+    fn from_iter<I: IntoIterator<Item = Carried>>(points: I) -> Self {
+        let (rest, sweep) = points.into_iter().map(|p| (p.rest, p.sweep)).unzip();
+        Self { rest, sweep }
+    }
+}
+
+/// A carried point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Carried {
+    /// Where it is, m.
+    pub position: DVec3,
+    /// Its rest point, as in [`Placement`].
+    rest: DVec3,
+    sweep: f64,
+}
+
+impl Image for Carried {
+    fn position(self) -> DVec3 {
+        self.position
+    }
+}
+
 /// The map of the whole antenna, on top of Green coordinates or any other smooth map.
 #[derive(Clone, Debug)]
 pub struct Carry<'a, M> {
@@ -109,48 +136,80 @@ pub struct Carry<'a, M> {
     warp: &'a Warp,
     feed: RigidFeed,
     frame: FeedFrame,
-    /// The shift on the rim of the rigid disc of each plane asked for so far, by the bits of the plane's height.
-    rims: RefCell<HashMap<u64, Rim>>,
+    /// The shift in the rigid disc of each plane asked for so far, by the bits of the plane's height.
+    discs: RefCell<HashMap<u64, Disc>>,
 }
 
-/// The shift on the rim of a rigid disc, as a trigonometric polynomial of the angle around the feed.
+/// The shift in a rigid disc: a trigonometric polynomial of the angle around the feed, whose harmonic h varies from the
+/// axis to the rim like `t^h (rim + bow (t^2 - 1))`, t being the part of the radius, as smooth functions do.
 ///
-/// The map is analytic, so the terms fall off geometrically; nodes are added until the last ones are below
-/// [`RIM_TAIL`]. Only the fade beyond the rim uses it.
+/// The map is analytic, so on the rim the terms fall off geometrically; nodes are added until the last ones are below
+/// [`RIM_TAIL`]. The fade beyond the rim uses that; inside, Newton's method starts from here and needs one step or two.
 #[derive(Clone, Debug)]
-struct Rim {
-    /// Mean, then cosine and sine coefficients of each harmonic, m.
-    mean: DVec2,
-    harmonics: Vec<[DVec2; 2]>,
+struct Disc {
+    /// Shift on the axis, m.
+    axis: DVec2,
+    /// Mean shift on the rim and on the ring at half the radius, m.
+    mean: [DVec2; 2],
+    /// Cosine and sine coefficients of each harmonic on the rim, m.
+    rim: Vec<[DVec2; 2]>,
+    /// Their change towards the axis, m; of the first harmonics only.
+    bow: Vec<[DVec2; 2]>,
 }
 
-impl Rim {
-    /// Interpolates shifts at equal angles `2 pi k / n`.
-    fn new(shifts: &[DVec2]) -> Self {
-        let n = shifts.len();
-        let term = |harmonic: usize, wave: fn(f64) -> f64| {
-            let weigh = |(k, s): (usize, &DVec2)| *s * wave(TAU * (harmonic * k % n) as f64 / n as f64);
-            shifts.iter().enumerate().map(weigh).sum::<DVec2>() * (2.0 / n as f64)
+/// Mean, and cosine and sine coefficients of each harmonic, of values at equal angles `2 pi k / n`.
+fn harmonics(values: &[DVec2]) -> (DVec2, Vec<[DVec2; 2]>) {
+    let n = values.len();
+    let term = |harmonic: usize, wave: fn(f64) -> f64| {
+        let weigh = |(k, s): (usize, &DVec2)| *s * wave(TAU * (harmonic * k % n) as f64 / n as f64);
+        values.iter().enumerate().map(weigh).sum::<DVec2>() * (2.0 / n as f64)
+    };
+    let terms = (1..n / 2).map(|h| [term(h, f64::cos), term(h, f64::sin)]).collect();
+    (values.iter().sum::<DVec2>() / n as f64, terms)
+}
+
+impl Disc {
+    /// Interpolates shifts on the axis, on the rim, and on the ring at half the radius.
+    fn new(axis: DVec2, rim: &[DVec2], inner: &[DVec2]) -> Self {
+        let (rim_mean, rim) = harmonics(rim);
+        let (inner_mean, inner) = harmonics(inner);
+        let bow = |(h, (rim, inner)): (usize, (&[DVec2; 2], &[DVec2; 2]))| {
+            [0, 1].map(|k| (rim[k] - inner[k] * 2.0_f64.powi(h as i32 + 1)) / 0.75)
         };
-        let harmonics = (1..n / 2).map(|h| [term(h, f64::cos), term(h, f64::sin)]).collect();
-        Self { mean: shifts.iter().sum::<DVec2>() / n as f64, harmonics }
+        let bow = rim.iter().zip(&inner).enumerate().map(bow).collect();
+        Self { axis, mean: [rim_mean, inner_mean], rim, bow }
     }
 
-    /// Greatest of the last eighth of the harmonics, m: what a finer polynomial would still add.
+    /// Greatest of the last eighth of the rim's harmonics, m: what a finer polynomial would still add.
     fn tail(&self) -> f64 {
-        let n = self.harmonics.len();
-        self.harmonics[n - n / 8..].iter().flatten().map(|c| c.length()).fold(0.0, f64::max)
+        let n = self.rim.len();
+        self.rim[n - n.div_ceil(8)..].iter().flatten().map(|c| c.length()).fold(0.0, f64::max)
     }
 
-    /// The mean shift, and `part` of what is added to it in a direction given as a unit vector.
-    fn at(&self, direction: DVec2, part: f64) -> DVec2 {
+    /// The shift on the rim, in a direction given as a unit vector.
+    fn on_rim(&self, direction: DVec2) -> DVec2 {
         let mut turn = direction;
-        let mut sum = DVec2::ZERO;
-        for [cosine, sine] in &self.harmonics {
+        let mut sum = self.mean[0];
+        for [cosine, sine] in &self.rim {
             sum += *cosine * turn.x + *sine * turn.y;
             turn = turn.rotate(direction);
         }
-        self.mean + sum * part
+        sum
+    }
+
+    /// About the shift at a place, relative to the radius.
+    fn inside(&self, place: DVec2) -> DVec2 {
+        let t2 = place.length_squared();
+        // The even quartic through axis, ring and rim.
+        let [rim, ring] = self.mean.map(|m| m - self.axis);
+        let quartic = (rim * 4.0 - ring * 16.0) / 3.0;
+        let mut sum = self.axis + ((rim - quartic) + quartic * t2) * t2;
+        let mut power = place;
+        for ([rim_cos, rim_sin], [bow_cos, bow_sin]) in self.rim.iter().zip(&self.bow) {
+            sum += (*rim_cos + *bow_cos * (t2 - 1.0)) * power.x + (*rim_sin + *bow_sin * (t2 - 1.0)) * power.y;
+            power = power.rotate(place);
+        }
+        sum
     }
 }
 
@@ -161,7 +220,7 @@ impl<'a, M: SmoothMap> Carry<'a, M> {
     /// [`DeformError`] if the warped feed point lies outside the cage or the map has no normal there.
     pub fn new(map: &'a M, warp: &'a Warp, feed: RigidFeed) -> Result<Self, DeformError> {
         let frame = feed_frame(map, warp, &feed)?;
-        Ok(Self { map, warp, feed, frame, rims: RefCell::default() })
+        Ok(Self { map, warp, feed, frame, discs: RefCell::default() })
     }
 
     /// The feed's posed frame.
@@ -170,17 +229,30 @@ impl<'a, M: SmoothMap> Carry<'a, M> {
         self.frame
     }
 
+    /// Carries some flat points, m.
+    ///
+    /// # Errors
+    /// [`DeformError::OutsideCage`] if the warped antenna leaves the cage, [`DeformError::Feed`] if the feed cannot
+    /// follow.
+    pub fn carry(&self, flat: &[DVec3]) -> Result<Vec<Carried>, DeformError> {
+        let placement = self.place(flat)?;
+        let mut positions = self.map.positions(&placement.rest)?;
+        sweep_line(&self.feed, &self.frame, &placement, &mut positions)?;
+        let carried = |(position, (rest, sweep))| Carried { position, rest, sweep };
+        Ok(positions.into_iter().zip(placement.rest.into_iter().zip(placement.sweep)).map(carried).collect())
+    }
+
     /// Finds the rest points of some flat points, m.
     ///
     /// # Errors
     /// [`DeformError::OutsideCage`] if the warped antenna leaves the cage, [`DeformError::Feed`] if the feed cannot
     /// follow.
-    pub fn place(&self, flat: &[DVec3]) -> Result<Placement, DeformError> {
+    fn place(&self, flat: &[DVec3]) -> Result<Placement, DeformError> {
         let feed = &self.feed;
         let length = feed.line_top - feed.port_plane;
         let sweep: Vec<f64> = flat.iter().map(|p| ((feed.line_top - p.z) / length).clamp(0.0, 1.0)).collect();
         let sheet: Vec<DVec3> = flat.iter().map(|p| DVec3::new(p.x, p.y, p.z.max(feed.line_top))).collect();
-        let mut rest: Vec<DVec3> = sheet.iter().map(|&p| self.warp.map(p)).collect();
+        let mut rest: Vec<DVec3> = sheet.par_iter().map(|&p| self.warp.map(p)).collect();
         let mut rigid = Vec::new();
         let mut guesses = Vec::new();
         for (i, p) in sheet.iter().enumerate() {
@@ -188,14 +260,12 @@ impl<'a, M: SmoothMap> Carry<'a, M> {
             let arm = p.truncate() - feed.center;
             let distance = arm.length();
             if distance <= radius * (1.0 + CONVERGED) {
-                // The shift grows about linearly from the axis to the rim.
-                let direction = arm.try_normalize().unwrap_or(DVec2::X);
-                let shift = self.rim_shift(p.z, direction, distance / radius)?;
+                let shift = self.in_disc(p.z, |disc| disc.inside(arm / radius))?;
                 rigid.push(i);
                 guesses.push(rest[i] + shift.extend(0.0));
             } else if distance < radius + reach {
                 let fade = (radius + reach - distance) / reach;
-                let shift = self.rim_shift(p.z, arm / distance, 1.0)?;
+                let shift = self.in_disc(p.z, |disc| disc.on_rim(arm / distance))?;
                 rest[i] += (shift * (fade * fade * (3.0 - 2.0 * fade))).extend(0.0);
             }
         }
@@ -206,17 +276,6 @@ impl<'a, M: SmoothMap> Carry<'a, M> {
         Ok(Placement { rest, sweep })
     }
 
-    /// Deformed positions of some flat points, m.
-    ///
-    /// # Errors
-    /// As [`Self::place`]; [`FeedError::LineTooShort`] if the port plane would lie within the ground.
-    pub fn positions(&self, flat: &[DVec3]) -> Result<Vec<DVec3>, DeformError> {
-        let placement = self.place(flat)?;
-        let mut positions = self.map.positions(&placement.rest)?;
-        sweep_line(&self.feed, &self.frame, &placement, &mut positions)?;
-        Ok(positions)
-    }
-
     /// The rigid radius of a plane, and the distance over which the shift fades out beyond it.
     fn rigid_radius(&self, z: f64) -> (f64, f64) {
         let down = (z / self.feed.substrate_bottom).clamp(0.0, 1.0);
@@ -224,34 +283,37 @@ impl<'a, M: SmoothMap> Carry<'a, M> {
         (mix(self.feed.pin_radius, self.feed.coax_radius), mix(self.feed.pin_fade, self.feed.coax_fade))
     }
 
-    /// The shift on the rim of the rigid disc of a plane, in a direction from the feed's axis; its part beyond the mean
-    /// is scaled.
-    fn rim_shift(&self, z: f64, direction: DVec2, part: f64) -> Result<DVec2, DeformError> {
-        if let Some(rim) = self.rims.borrow().get(&z.to_bits()) {
-            return Ok(rim.at(direction, part));
+    /// Asks the disc of a plane, which is solved for once.
+    fn in_disc<T>(&self, z: f64, ask: impl Fn(&Disc) -> T) -> Result<T, DeformError> {
+        if let Some(disc) = self.discs.borrow().get(&z.to_bits()) {
+            return Ok(ask(disc));
         }
         let mut n_nodes = RIM_NODES;
-        let rim = loop {
-            let rim = self.solve_rim(z, n_nodes)?;
-            if rim.tail() <= RIM_TAIL * self.feed.coax_radius || n_nodes >= MAX_RIM_NODES {
-                break rim;
+        let disc = loop {
+            let disc = self.solve_disc(z, n_nodes)?;
+            if disc.tail() <= RIM_TAIL * self.feed.coax_radius || n_nodes >= MAX_RIM_NODES {
+                break disc;
             }
             n_nodes *= 2;
         };
-        let shift = rim.at(direction, part);
-        self.rims.borrow_mut().insert(z.to_bits(), rim);
-        Ok(shift)
+        let answer = ask(&disc);
+        self.discs.borrow_mut().insert(z.to_bits(), disc);
+        Ok(answer)
     }
 
-    /// Solves for the shift at equal angles around the rim of a plane's rigid disc.
-    fn solve_rim(&self, z: f64, n_nodes: usize) -> Result<Rim, DeformError> {
+    /// Solves for the shift on the axis, at equal angles around the rim of a plane's rigid disc, and half-way.
+    fn solve_disc(&self, z: f64, n_nodes: usize) -> Result<Disc, DeformError> {
         let radius = self.rigid_radius(z).0;
-        let angle = |k: usize| TAU * k as f64 / n_nodes as f64;
-        let node = |k: usize| (self.feed.center + DVec2::from_angle(angle(k)) * radius).extend(z);
-        let nodes: Vec<DVec3> = (0..n_nodes).map(node).collect();
+        let ring = |n: usize, radius: f64| {
+            let arm = move |k: usize| DVec2::from_angle(TAU * k as f64 / n as f64) * radius;
+            (0..n).map(move |k| (self.feed.center + arm(k)).extend(z))
+        };
+        let nodes: Vec<DVec3> =
+            ring(1, 0.0).chain(ring(INNER_NODES, radius / 2.0)).chain(ring(n_nodes, radius)).collect();
         let solved = self.solve(&nodes, nodes.iter().map(|&p| self.warp.map(p)).collect())?;
         let shifts: Vec<DVec2> = nodes.iter().zip(solved).map(|(p, s)| (s - self.warp.map(*p)).truncate()).collect();
-        Ok(Rim::new(&shifts))
+        let (inner, rim) = shifts[1..].split_at(INNER_NODES);
+        Ok(Disc::new(shifts[0], rim, inner))
     }
 
     /// Rest points whose images have the lateral coordinates of the flat `targets`, by Newton's method from a first
@@ -372,8 +434,8 @@ mod tests {
         let warp = Warp::identity(DVec2::splat(0.01));
         let carry = Carry::new(&map, &warp, paper_feed()).expect("inside");
         let plc = flat_complex(&paper()).expect("valid");
-        for (p, q) in plc.vertices.iter().zip(carry.positions(&plc.vertices).expect("inside")) {
-            assert!(p.distance(q) < 1e-14, "{p} went to {q}");
+        for (p, q) in plc.vertices.iter().zip(carry.carry(&plc.vertices).expect("inside")) {
+            assert!(p.distance(q.position) < 1e-14, "{p} went to {q:?}");
         }
     }
 
@@ -385,10 +447,10 @@ mod tests {
             let map = bent(axis, radius);
             let warp = Warp::scale(DVec2::splat(0.01), DVec2::new(1.03, 0.98));
             let carry = Carry::new(&map, &warp, paper_feed()).expect("inside");
-            let positions = carry.positions(&plc.vertices).expect("the line fits");
+            let carried = carry.carry(&plc.vertices).expect("the line fits");
             let mut port_heights = Vec::new();
-            for (flat, posed) in plc.vertices.iter().zip(&positions) {
-                let local = carry.frame().local(*posed);
+            for (flat, posed) in plc.vertices.iter().zip(&carried) {
+                let local = carry.frame().local(posed.position);
                 let arm = flat.truncate() - params.feed();
                 let on_pin = arm.length() <= params.pin_radius + 1e-12 && flat.z <= 0.0;
                 let on_line = arm.length() <= params.coax_radius + 1e-12 && flat.z <= -params.height;
@@ -411,6 +473,6 @@ mod tests {
         let feed = RigidFeed { coax_radius: from_mm(3.5), ..paper_feed() };
         let carry = Carry::new(&map, &warp, feed).expect("inside");
         let rim = DVec3::new(feed.center.x + feed.coax_radius, feed.center.y, feed.line_top);
-        assert!(matches!(carry.positions(&[rim]), Err(DeformError::Feed(_))), "3.5 mm in a 2.6 mm inner radius");
+        assert!(matches!(carry.carry(&[rim]), Err(DeformError::Feed(_))), "3.5 mm in a 2.6 mm inner radius");
     }
 }

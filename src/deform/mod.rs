@@ -45,12 +45,12 @@ mod warp;
 mod weights;
 
 pub use cage::GreenCage;
-pub use carry::{Carry, FeedError, FeedFrame, Placement, RigidFeed, feed_frame, sweep_line};
+pub use carry::{Carried, Carry, FeedError, FeedFrame, Placement, RigidFeed, feed_frame, sweep_line};
 pub use error::DeformError;
 pub use map::GreenMap;
 pub use pose::Pose;
 pub use preview::PreviewWeights;
 pub use smooth_map::SmoothMap;
-pub use split::{SplitSettings, SplitSurface, split};
+pub use split::{Image, SplitSettings, SplitSurface, split};
 pub use warp::Warp;
 pub use weights::GreenWeights;

@@ -30,15 +30,35 @@ impl SplitSettings {
     }
 }
 
-/// A split surface with its deformed positions.
+/// What a map says of a point: its deformed position, and perhaps more that is worth keeping.
+pub trait Image: Copy {
+    /// The deformed position, m.
+    fn position(self) -> DVec3;
+}
+
+impl Image for DVec3 {
+    fn position(self) -> DVec3 {
+        self
+    }
+}
+
+/// A split surface with the images of its vertices.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SplitSurface {
+pub struct SplitSurface<P> {
     /// The flat surface with the vertices that splitting added at its end.
     pub flat: Plc,
-    /// Deformed positions of its vertices, m.
-    pub positions: Vec<DVec3>,
+    /// Images of its vertices.
+    pub images: Vec<P>,
     /// Passes taken.
     pub passes: usize,
+}
+
+impl<P: Image> SplitSurface<P> {
+    /// Deformed positions of the vertices, m.
+    #[must_use]
+    pub fn positions(&self) -> Vec<DVec3> {
+        self.images.iter().map(|i| i.position()).collect()
+    }
 }
 
 /// Where the edge is compared with the map; the midpoint first, since most marked edges show there.
@@ -46,19 +66,19 @@ const FRACTIONS: [f64; 3] = [0.5, 0.25, 0.75];
 
 /// Splits `flat` until `map` is followed to the tolerance.
 ///
-/// * `map`: deformed positions of flat points, m; it must be deterministic for each point alone.
+/// * `map`: images of flat points, m; it must be deterministic for each point alone.
 ///
 /// # Errors
 /// What `map` returns, [`DeformError::SplitLimit`] if the limits of `settings` are reached, or
 /// [`DeformError::Cancelled`].
-pub fn split(
+pub fn split<P: Image>(
     flat: Plc,
-    map: impl Fn(&[DVec3]) -> Result<Vec<DVec3>, DeformError>,
+    map: impl Fn(&[DVec3]) -> Result<Vec<P>, DeformError>,
     settings: SplitSettings,
     task: &Task,
-) -> Result<SplitSurface, DeformError> {
-    let positions = map(&flat.vertices)?;
-    let mut surface = SplitSurface { flat, positions, passes: 0 };
+) -> Result<SplitSurface<P>, DeformError> {
+    let images = map(&flat.vertices)?;
+    let mut surface = SplitSurface { flat, images, passes: 0 };
     // Edges seen so far; true if they were straight enough. A split edge never comes back.
     let mut straight: HashMap<[VertexId; 2], bool> = HashMap::new();
     loop {
@@ -67,27 +87,27 @@ pub fn split(
         let mut marked = Vec::new();
         for (edge, midpoint) in fresh.iter().zip(mark(&surface, &fresh, &map, settings.tolerance)?) {
             straight.insert(*edge, midpoint.is_none());
-            marked.extend(midpoint.map(|(flat_point, position)| (*edge, flat_point, position)));
+            marked.extend(midpoint.map(|(flat_point, image)| (*edge, flat_point, image)));
         }
         let longest = longest_edges(&surface.flat, marked.iter().map(|m| m.0).collect());
         let middles: Vec<DVec3> = longest.iter().map(|&e| middle_of(&surface.flat.vertices, e)).collect();
         marked.extend(longest.iter().zip(&middles).zip(map(&middles)?).map(|((e, p), x)| (*e, *p, x)));
         let mut middle: HashMap<[VertexId; 2], VertexId> = HashMap::new();
-        for (edge, flat_point, position) in marked {
-            middle.insert(edge, VertexId::new(surface.positions.len()));
+        for (edge, flat_point, image) in marked {
+            middle.insert(edge, VertexId::new(surface.images.len()));
             surface.flat.vertices.push(flat_point);
-            surface.positions.push(position);
+            surface.images.push(image);
         }
         if middle.is_empty() {
             return Ok(surface);
         }
         surface.passes += 1;
-        let n_vertices = surface.positions.len();
+        let n_vertices = surface.images.len();
         if surface.passes > settings.max_passes || n_vertices > settings.max_vertices {
             return Err(DeformError::SplitLimit { passes: surface.passes, n_vertices });
         }
         let facets = std::mem::take(&mut surface.flat.facets);
-        surface.flat.facets = facets.iter().flat_map(|f| divide(f, &middle, &surface.positions)).collect();
+        surface.flat.facets = facets.iter().flat_map(|f| divide(f, &middle, &surface.images)).collect();
     }
 }
 
@@ -139,20 +159,19 @@ fn fresh_edges(facets: &[Facet], known: &HashMap<[VertexId; 2], bool>) -> Vec<[V
 }
 
 /// For each edge that must be split, its flat midpoint and the midpoint's image.
-fn mark(
-    surface: &SplitSurface,
+fn mark<P: Image>(
+    surface: &SplitSurface<P>,
     edges: &[[VertexId; 2]],
-    map: &impl Fn(&[DVec3]) -> Result<Vec<DVec3>, DeformError>,
+    map: &impl Fn(&[DVec3]) -> Result<Vec<P>, DeformError>,
     tolerance: f64,
-) -> Result<Vec<Option<(DVec3, DVec3)>>, DeformError> {
-    let ends = |points: &[DVec3], [a, b]: [VertexId; 2]| (points[a.index()], points[b.index()]);
-    let at = |fraction: f64, edge| {
-        let (a, b) = ends(&surface.flat.vertices, edge);
+) -> Result<Vec<Option<(DVec3, P)>>, DeformError> {
+    let at = |fraction: f64, edge: [VertexId; 2]| {
+        let [a, b] = edge.map(|v| surface.flat.vertices[v.index()]);
         a.lerp(b, fraction)
     };
-    let leaves = |fraction: f64, edge, image: DVec3| {
-        let (a, b) = ends(&surface.positions, edge);
-        image.distance(a.lerp(b, fraction)) > tolerance
+    let leaves = |fraction: f64, edge: [VertexId; 2], image: P| {
+        let [a, b] = edge.map(|v| surface.images[v.index()].position());
+        image.position().distance(a.lerp(b, fraction)) > tolerance
     };
     let halves: Vec<DVec3> = edges.iter().map(|&e| at(FRACTIONS[0], e)).collect();
     let images = map(&halves)?;
@@ -168,11 +187,11 @@ fn mark(
 }
 
 /// Divides one facet by the midpoints of its marked edges, keeping orientation and regions.
-fn divide(facet: &Facet, middle: &HashMap<[VertexId; 2], VertexId>, positions: &[DVec3]) -> Vec<Facet> {
+fn divide<P: Image>(facet: &Facet, middle: &HashMap<[VertexId; 2], VertexId>, images: &[P]) -> Vec<Facet> {
     let v = facet.vertices;
     let mid: [Option<VertexId>; 3] = [0, 1, 2].map(|k| middle.get(&key(v[k], v[(k + 1) % 3])).copied());
     let part = |vertices| Facet { vertices, ..*facet };
-    let apart = |a: VertexId, b: VertexId| positions[a.index()].distance_squared(positions[b.index()]);
+    let apart = |a: VertexId, b: VertexId| images[a.index()].position().distance_squared(images[b.index()].position());
     match mid {
         [None, None, None] => vec![*facet],
         [Some(ab), Some(bc), Some(ca)] => {
@@ -227,14 +246,14 @@ mod tests {
         };
         let settings = SplitSettings::with_tolerance(2e-5);
         let split = split(paper_complex(), wavy, settings, &Task::default()).expect("smooth");
-        let deformed = split.flat.with_vertices(split.positions.clone());
+        let deformed = split.flat.with_vertices(split.positions());
         assert_eq!(split.flat.check(), Ok(()), "flat surface closed");
         assert_eq!(deformed.check(), Ok(()), "deformed surface closed");
         for facet in &split.flat.facets {
             for k in 0..3 {
                 let (a, b) = (facet.vertices[k].index(), facet.vertices[(k + 1) % 3].index());
                 let middle = split.flat.vertices[a].midpoint(split.flat.vertices[b]);
-                let gap = wavy(&[middle]).unwrap()[0].distance(split.positions[a].midpoint(split.positions[b]));
+                let gap = wavy(&[middle]).unwrap()[0].distance(split.images[a].midpoint(split.images[b]));
                 assert!(gap <= settings.tolerance, "edge {a}-{b} leaves the map by {gap:e}");
             }
         }

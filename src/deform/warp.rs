@@ -4,7 +4,7 @@
 //! right: `(x, y, z) -> (a(x, y), b(x, y), k z)`. `a` and `b` are tensor products of Chebyshev polynomials over the
 //! substrate's rectangle; every part goes through the same map, so interfaces stay shared.
 
-use crate::geometry::{DMat2, DVec2, DVec3};
+use crate::geometry::{DMat2, DVec2, DVec3, chebyshev};
 
 /// A map of the flat antenna into the rest cage.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,14 +58,13 @@ impl Warp {
     }
 
     /// Values and derivatives of all basis functions at a point: `[n_terms]` triples (value, d/dx, d/dy).
-    #[must_use]
-    pub fn basis(&self, p: DVec2) -> Vec<[f64; 3]> {
-        let [tx, ty] = [0, 1].map(|axis| chebyshev(self.degrees[axis], p[axis] / self.half[axis], self.half[axis]));
-        let mut terms = Vec::with_capacity(self.n_terms());
-        for &(x, dx) in &tx {
-            terms.extend(ty.iter().map(|&(y, dy)| [x * y, dx * y, x * dy]));
-        }
-        terms
+    pub fn basis(&self, p: DVec2) -> impl Iterator<Item = [f64; 3]> {
+        let [nx, ny] = self.degrees.map(|d| d + 1);
+        let t = p / self.half;
+        let slope = self.half.recip();
+        chebyshev(t.x).take(nx).flat_map(move |(x, dx)| {
+            chebyshev(t.y).take(ny).map(move |(y, dy)| [x * y, dx * slope.x * y, x * dy * slope.y])
+        })
     }
 
     /// The plane part of the map and its Jacobian (columns: derivatives along x and y).
@@ -86,15 +85,16 @@ impl Warp {
         self.plane(p.truncate()).0.extend(self.z_scale * p.z)
     }
 
-    /// The flat point whose image is `p`, by Newton's method from the linear part.
+    /// The flat point whose image is `p`, by Newton's method.
     ///
-    /// A compensating warp is close to a scale, so a few steps reach rounding; where it cannot be inverted (a fold),
-    /// the last iterate is returned.
+    /// * `guess`: a place near it; a compensating warp is so smooth that a few steps reach rounding from any place.
+    ///
+    /// Where the warp cannot be inverted (a fold), the last iterate is returned.
     #[must_use]
-    pub fn inverse(&self, p: DVec3) -> DVec3 {
+    pub fn inverse(&self, p: DVec3, guess: DVec2) -> DVec3 {
         const STEPS: usize = 12;
         let target = p.truncate();
-        let mut q = target / self.plane(DVec2::ZERO).1.determinant().abs().sqrt();
+        let mut q = guess;
         for _ in 0..STEPS {
             let (image, jacobian) = self.plane(q);
             let step = jacobian.inverse() * (target - image);
@@ -108,19 +108,6 @@ impl Warp {
         }
         q.extend(p.z / self.z_scale)
     }
-}
-
-/// Chebyshev polynomials `T_0 … T_degree` at `t = x / half`, with their derivatives along x.
-fn chebyshev(degree: usize, t: f64, half: f64) -> Vec<(f64, f64)> {
-    let mut terms = vec![(1.0, 0.0), (t, 1.0)];
-    for n in 2..=degree {
-        let (value, slope) = terms[n - 1];
-        let (older, older_slope) = terms[n - 2];
-        terms.push((2.0 * t * value - older, 2.0 * (value + t * slope) - older_slope));
-    }
-    terms.truncate(degree + 1);
-    terms.iter_mut().for_each(|term| term.1 /= half);
-    terms
 }
 
 #[cfg(test)]
@@ -161,7 +148,7 @@ mod tests {
     fn the_inverse_undoes_the_map() {
         let warp = bumpy();
         for p in [DVec3::ZERO, DVec3::new(0.009, 0.011, 1e-4), DVec3::new(-0.01, 0.012, -1e-3)] {
-            assert!(warp.inverse(warp.map(p)).distance(p) < 1e-15, "{p}");
+            assert!(warp.inverse(warp.map(p), DVec2::ZERO).distance(p) < 1e-15, "{p}");
         }
     }
 }

@@ -232,7 +232,7 @@ impl<'a> Fit<'a> {
             let deviation = metric_deviation(ru, rv);
             // How ru and rv turn when a or b moves by itself (curvature), beside the change of their slopes.
             let curve = [[raa * au + rab * bu, raa * av + rab * bv], [rab * au + rbb * bu, rab * av + rbb * bv]];
-            for (k, [value, du, dv]) in self.warp.basis(*p).into_iter().enumerate() {
+            for (k, [value, du, dv]) in self.warp.basis(*p).enumerate() {
                 for (c, r) in [ra, rb].into_iter().enumerate() {
                     let change_u = r * du + curve[c][0] * value;
                     let change_v = r * dv + curve[c][1] * value;
@@ -265,7 +265,7 @@ impl<'a> Fit<'a> {
     fn add_gauge(&self, matrix: &mut DMatrix<f64>, right: &mut DVector<f64>, first: usize, scale: f64) {
         let n_terms = self.warp.n_terms();
         let (center, slopes) = self.warp.plane(DVec2::ZERO);
-        for (k, [value, dx, dy]) in self.warp.basis(DVec2::ZERO).into_iter().enumerate() {
+        for (k, [value, dx, dy]) in self.warp.basis(DVec2::ZERO).enumerate() {
             matrix[(first, k)] = GAUGE_WEIGHT * value;
             matrix[(first + 1, n_terms + k)] = GAUGE_WEIGHT * value;
             matrix[(first + 2, k)] = GAUGE_WEIGHT * dy * scale;

@@ -7,7 +7,7 @@
 use super::quadrature::{gauss_legendre, plane_points, uniform};
 use super::{CompensationError, MAX_FIT_ORDER};
 use crate::deform::SmoothMap;
-use crate::geometry::{DVec2, DVec3};
+use crate::geometry::{DVec2, DVec3, chebyshev};
 use nalgebra::DMatrix;
 
 const SAMPLES: usize = 17;
@@ -62,28 +62,18 @@ pub fn fitted_size(images: &[DVec3], orders: [usize; 2]) -> DVec2 {
 /// Matrices that take the samples to the fitted polynomial's values and slopes at `nodes`: `[nodes, SAMPLES]`.
 fn evaluation(order: usize, nodes: &[f64]) -> (DMatrix<f64>, DMatrix<f64>) {
     let samples = uniform(SAMPLES);
-    let at_samples = DMatrix::from_fn(SAMPLES, order + 1, |i, k| chebyshev(k, samples[i]).0);
+    let columns = |points: &[f64], pick: fn((f64, f64)) -> f64| {
+        DMatrix::from_row_iterator(
+            points.len(),
+            order + 1,
+            points.iter().flat_map(|&t| chebyshev(t).take(order + 1).map(pick)),
+        )
+    };
+    let at_samples = columns(&samples, |t| t.0);
     // Full column rank, since there are more distinct samples than coefficients.
     let normal = (at_samples.transpose() * &at_samples).cholesky().expect("distinct samples");
     let fit = normal.solve(&at_samples.transpose());
-    let basis = |pick: fn((f64, f64)) -> f64| {
-        DMatrix::from_fn(nodes.len(), order + 1, |i, k| pick(chebyshev(k, nodes[i]))) * &fit
-    };
-    (basis(|t| t.0), basis(|t| t.1))
-}
-
-/// `T_k(t)` and its derivative.
-fn chebyshev(k: usize, t: f64) -> (f64, f64) {
-    let (mut older, mut term) = ((1.0, 0.0), (t, 1.0));
-    if k == 0 {
-        return older;
-    }
-    for _ in 1..k {
-        let next = (2.0 * t * term.0 - older.0, 2.0 * (term.0 + t * term.1) - older.1);
-        older = term;
-        term = next;
-    }
-    term
+    (columns(nodes, |t| t.0) * &fit, columns(nodes, |t| t.1) * &fit)
 }
 
 #[cfg(test)]

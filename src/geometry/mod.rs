@@ -7,6 +7,7 @@
 //! exactly.
 
 pub mod bvh;
+mod chebyshev;
 pub mod id;
 pub mod inside;
 pub mod intersect;
@@ -14,6 +15,7 @@ pub mod plc;
 pub mod predicates;
 pub mod tri_mesh;
 
+pub use chebyshev::chebyshev;
 pub use glam::{DMat2, DMat3, DVec2, DVec3};
 pub use id::{FaceId, RegionId, VertexId};
 pub use plc::{Facet, Plc, PlcError, Region, RegionRole};

@@ -6,7 +6,7 @@ use super::scene::Scene;
 use crate::antenna::{PATCH, PatchParams, flat_complex};
 use crate::cage::Cage;
 use crate::deform::{
-    Carry, GreenCage, GreenWeights, Placement, Pose, SmoothMap, SplitSettings, SplitSurface, Warp, split,
+    Carried, Carry, GreenCage, GreenWeights, Placement, Pose, SmoothMap, SplitSettings, SplitSurface, Warp, split,
 };
 use crate::distortion::{
     Compensated, CompensationError, CompensationStep, Figures, IsometricProblem, Scope, Sheet, WlProblem,
@@ -93,8 +93,9 @@ pub fn run(project: &Project, task: &Task) -> Result<Stages, PipelineError> {
     check_folds(&sheet(DVec2::ONE), &scene.params)?;
     let carry = Carry::new(&compensated.map, &compensated.warp, Scene::feed(&built))?;
     let surface = guarded_split(&built, &carry, project.settings.tolerance_mm, task)?;
-    let placement = carry.place(&surface.flat.vertices)?;
-    let reference = reference(&surface, &placement, &compensated);
+    let positions = surface.positions();
+    let placement: Placement = surface.images.iter().copied().collect();
+    let reference = reference(&surface.flat, &placement, &compensated);
     task.check()?;
     let orders = project.settings.fit_orders;
     let cylinder = scene.cylinder();
@@ -105,9 +106,9 @@ pub fn run(project: &Project, task: &Task) -> Result<Stages, PipelineError> {
     let deformed = Deformed {
         cage: Arc::clone(&scene.cage),
         posed,
-        fields: Fields::new(&surface.flat, &reference, &surface.positions),
+        fields: Fields::new(&surface.flat, &reference, &positions),
         flat: Arc::new(surface.flat),
-        positions: surface.positions,
+        positions,
         figures,
         ideal,
         compensation: compensated.steps.clone(),
@@ -136,7 +137,7 @@ pub fn exact_cylinder(project: &Project, task: &Task) -> Result<Option<Plc>, Pip
     let identity = Warp::identity(half);
     let carry = Carry::new(&cylinder, &identity, Scene::feed(&scene.params))?;
     let surface = guarded_split(&scene.params, &carry, project.settings.tolerance_mm, task)?;
-    Ok(Some(surface.flat.with_vertices(surface.positions)))
+    Ok(Some(surface.flat.with_vertices(surface.positions())))
 }
 
 /// Carries points through any closed triangle cage; numbers as they stand, no unit.
@@ -211,7 +212,7 @@ fn scaled(params: &PatchParams, scale: DVec2) -> PatchParams {
 }
 
 /// Samples across the antenna where the map must not fold.
-const FOLD_SAMPLES: [usize; 3] = [33, 33, 3];
+const FOLD_SAMPLES: [usize; 3] = [21, 21, 3];
 
 /// Refuses a map that turns a sample of the antenna inside out: needed for a valid surface, not sufficient.
 fn check_folds(sheet: &impl SmoothMap, params: &PatchParams) -> Result<(), PipelineError> {
@@ -238,15 +239,15 @@ fn guarded_split<M: SmoothMap>(
     carry: &Carry<'_, M>,
     tolerance_mm: f64,
     task: &Task,
-) -> Result<SplitSurface, PipelineError> {
+) -> Result<SplitSurface<Carried>, PipelineError> {
     let flat = flat_complex(built)?;
     let mut tolerance = from_mm(tolerance_mm);
     for attempt in 0..=RETRIES {
         let phase = task.phase("splitting edges", 0);
-        let surface = split(flat.clone(), |p| carry.positions(p), SplitSettings::with_tolerance(tolerance), task)?;
-        phase.advance(surface.positions.len());
+        let surface = split(flat.clone(), |p| carry.carry(p), SplitSettings::with_tolerance(tolerance), task)?;
+        phase.advance(surface.images.len());
         let faces: Vec<_> = surface.flat.facets.iter().map(|f| f.vertices).collect();
-        let crossings = intersect::crossings(&surface.positions, &faces);
+        let crossings = intersect::crossings(&surface.positions(), &faces);
         let Some(first) = crossings.first() else { return Ok(surface) };
         if attempt == RETRIES {
             return Err(crossing_error(&surface, *first, crossings.len()));
@@ -256,8 +257,8 @@ fn guarded_split<M: SmoothMap>(
     unreachable!("the last attempt returns")
 }
 
-fn crossing_error(surface: &SplitSurface, first: intersect::Crossing, count: usize) -> PipelineError {
-    let posed = surface.flat.with_vertices(surface.positions.clone());
+fn crossing_error(surface: &SplitSurface<Carried>, first: intersect::Crossing, count: usize) -> PipelineError {
+    let posed = surface.flat.with_vertices(surface.positions());
     let place = posed.corners(first.first.index()).iter().sum::<DVec3>() / 3.0;
     let part = |f: usize| {
         let facet = &surface.flat.facets[f];
@@ -275,23 +276,21 @@ fn crossing_error(surface: &SplitSurface, first: intersect::Crossing, count: usi
 
 /// Where each vertex of the surface sits on the antenna as drawn: its rest point without the compensation. The shift
 /// that keeps the feed round slides points along the sheet; it is no distortion and does not count.
-fn reference(surface: &SplitSurface, placement: &Placement, compensated: &Compensated) -> Vec<DVec3> {
-    let patch = surface.flat.region(PATCH);
-    let mut on_patch = vec![false; surface.positions.len()];
-    for facet in surface.flat.facets.iter().filter(|f| Some(f.back) == patch || Some(f.front) == patch) {
+fn reference(flat: &Plc, placement: &Placement, compensated: &Compensated) -> Vec<DVec3> {
+    let patch = flat.region(PATCH);
+    let mut on_patch = vec![false; flat.vertices.len()];
+    for facet in flat.facets.iter().filter(|f| Some(f.back) == patch || Some(f.front) == patch) {
         facet.vertices.iter().for_each(|v| on_patch[v.index()] = true);
     }
     let unscale = compensated.patch_scale.recip();
-    surface
-        .flat
-        .vertices
+    flat.vertices
         .iter()
         .enumerate()
-        .map(|(v, flat)| {
+        .map(|(v, point)| {
             if placement.sweep[v] > 0.0 {
-                return *flat;
+                return *point;
             }
-            let drawn = compensated.warp.inverse(placement.rest[v]);
+            let drawn = compensated.warp.inverse(placement.rest[v], point.truncate());
             if on_patch[v] { (drawn.truncate() * unscale).extend(drawn.z) } else { drawn }
         })
         .collect()
