@@ -1,9 +1,9 @@
 //! `deform` and `compensate`: the whole job, its figures, and the export.
 
 use super::args::{CompensateArgs, DeformArgs, Mode, ScopeChoice};
-use super::report::{self, ExportReport, FiguresReport, StepReport};
+use super::report::{self, ExportReport, StepReport};
 use crate::io::{self, ExportOptions};
-use crate::pipeline::{self, Deformed};
+use crate::pipeline::{self, Deformed, FiguresReport};
 use crate::project::{CompensationMode, Edit, Project, ScopeSpec, file};
 use crate::task::Task;
 use anyhow::{Context, Result};
@@ -48,7 +48,7 @@ pub(super) fn deform(args: &DeformArgs, task: &Task) -> Result<()> {
     let deformed = pipeline::deform(&project, task).with_context(|| format!("deforming {}", args.file.display()))?;
     let export = match &args.out {
         Some(dir) => {
-            let options = ExportOptions { summary: summary(&project, &deformed), ..ExportOptions::default() };
+            let options = ExportOptions { summary: pipeline::summary(&project, &deformed), ..ExportOptions::default() };
             Some(ExportReport::new(dir, &io::export(&deformed.surface(), dir, &options)?))
         }
         None => None,
@@ -78,17 +78,6 @@ fn load(path: &Path, mode: Option<Mode>, scope: Option<ScopeChoice>, orders: Opt
     }
     Edit::SetSettings(settings).apply(&mut project)?;
     Ok(project)
-}
-
-/// What an export's certificate says of the geometry's making.
-pub(super) fn summary(project: &Project, deformed: &Deformed) -> serde_json::Map<String, serde_json::Value> {
-    let part = |value: serde_json::Result<serde_json::Value>| value.expect("plain fields of finite numbers");
-    let mut summary = serde_json::Map::new();
-    summary.insert("presets".to_owned(), part(serde_json::to_value(&project.presets)));
-    summary.insert("hand_edits".to_owned(), project.hand_edits.len().into());
-    summary.insert("compensation".to_owned(), part(serde_json::to_value(project.settings.compensation)));
-    summary.insert("figures".to_owned(), part(serde_json::to_value(FiguresReport::from(&deformed.figures))));
-    summary
 }
 
 fn show(path: &Path, project: &Project, deformed: &Deformed, export: Option<&ExportReport>, json: bool) -> Result<()> {

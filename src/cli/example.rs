@@ -25,7 +25,7 @@ pub(super) fn run(draw: Draw<'_>, task: &Task) -> Result<()> {
     let project = example();
     file::write(&out.join("example.json"), &project)?;
     let deformed = pipeline::deform(&project, task)?;
-    let options = ExportOptions { summary: super::deform::summary(&project, &deformed), ..ExportOptions::default() };
+    let options = ExportOptions { summary: pipeline::summary(&project, &deformed), ..ExportOptions::default() };
     let dir = out.join("export");
     let export = ExportReport::new(&dir, &io::export(&deformed.surface(), &dir, &options)?);
     super::print(&super::deform::text(&project, &deformed, Some(&export)))?;

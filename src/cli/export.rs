@@ -20,7 +20,7 @@ pub(super) fn export(args: &ExportArgs, task: &Task) -> Result<()> {
     let surface = match args.shape {
         ExportShape::Deformed => {
             let deformed = pipeline::deform(&project, task).with_context(|| format!("deforming {name}"))?;
-            options.summary = super::deform::summary(&project, &deformed);
+            options.summary = pipeline::summary(&project, &deformed);
             deformed.surface()
         }
         ExportShape::Flat => pipeline::flat(&project).with_context(|| format!("building {name}"))?,

@@ -174,7 +174,7 @@ impl Disc {
         let (rim_mean, rim) = harmonics(rim);
         let (inner_mean, inner) = harmonics(inner);
         let bow = |(h, (rim, inner)): (usize, (&[DVec2; 2], &[DVec2; 2]))| {
-            [0, 1].map(|k| (rim[k] - inner[k] * 2.0_f64.powi(h as i32 + 1)) / 0.75)
+            [0, 1].map(|k| (rim[k] - inner[k] * 2.0_f64.powf(h as f64 + 1.0)) / 0.75)
         };
         let bow = rim.iter().zip(&inner).enumerate().map(bow).collect();
         Self { axis, mean: [rim_mean, inner_mean], rim, bow }

@@ -6,7 +6,7 @@ use super::ui_state::UiState;
 use crate::antenna::flat_complex;
 use crate::geometry::Plc;
 use crate::io::{ExportOptions, export, verify};
-use crate::pipeline::{Deformed, exact_cylinder};
+use crate::pipeline::{Deformed, exact_cylinder, summary};
 use crate::project::Project;
 use crate::task::Task;
 use anyhow::Context as _;
@@ -232,7 +232,7 @@ fn write(
     let plc: Plc = match which {
         Which::Deformed => {
             let deformed = deformed.context("the deformed antenna has not been computed yet")?;
-            summarize(deformed, &mut options);
+            options.summary = summary(project, deformed);
             deformed.surface()
         }
         Which::Flat => flat_complex(&project.antenna.to_params()).context("the flat antenna cannot be built")?,
@@ -253,22 +253,6 @@ fn write(
         format!("T-junctions {}, crossing triangles {}", certificate.t_junctions, certificate.crossing_triangles),
         format!("Distance of parts that do not touch: {:.4} mm or more", certificate.clearance_mm),
     ])
-}
-
-fn summarize(deformed: &Deformed, options: &mut ExportOptions) {
-    let f = &deformed.figures;
-    let figures = [
-        ("rho_patch", f.rho_patch),
-        ("rho_substrate", f.rho_substrate),
-        ("width_error", f.width_error),
-        ("length_error", f.length_error),
-        ("thickness_error", f.thickness_error),
-        ("patch_strain", f.patch_strain),
-        ("substrate_strain", f.substrate_strain),
-    ];
-    for (name, value) in figures {
-        options.summary.insert(name.to_owned(), value.into());
-    }
 }
 
 fn proved(folder: &Path) -> anyhow::Result<Vec<String>> {

@@ -15,6 +15,7 @@ pub mod live;
 mod retreat;
 mod scene;
 mod stages;
+mod summary;
 pub mod worker;
 
 pub use error::PipelineError;
@@ -22,3 +23,4 @@ pub use fields::Fields;
 pub use retreat::retreat;
 pub use scene::Scene;
 pub use stages::{Deformed, Stages, apply_cage, deform, exact_cylinder, flat, run};
+pub use summary::{FiguresReport, summary};
