@@ -26,6 +26,8 @@ pub mod deform;
 
 pub mod distortion;
 
+pub mod tet;
+
 pub mod io;
 pub mod project;
 #[cfg(feature = "gui")]
