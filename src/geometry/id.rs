@@ -10,6 +10,9 @@ macro_rules! id {
         pub struct $name(u32);
 
         impl $name {
+            /// Stands for "none" in arrays of ids; not the id of anything.
+            pub const NONE: Self = Self(u32::MAX);
+
             /// Makes an id from an array index.
             ///
             /// # Panics
@@ -43,6 +46,10 @@ macro_rules! id {
 id!(
     /// A mesh point.
     VertexId
+);
+id!(
+    /// A tetrahedron of a mesh.
+    TetId
 );
 id!(
     /// A triangle of a surface.

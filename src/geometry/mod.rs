@@ -17,6 +17,6 @@ pub mod tri_mesh;
 
 pub use chebyshev::chebyshev;
 pub use glam::{DMat2, DMat3, DVec2, DVec3};
-pub use id::{FaceId, RegionId, VertexId};
+pub use id::{FaceId, RegionId, TetId, VertexId};
 pub use plc::{Facet, Plc, PlcError, Region, RegionRole};
 pub use tri_mesh::{SurfaceError, TriMesh};

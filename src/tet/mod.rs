@@ -4,8 +4,25 @@
 //! PatchParams, map --block--> Block (tets of the antenna) --skin + sphere--> Surface --fill--> TetMesh
 //! ```
 
+mod classify;
+mod delaunay;
+mod error;
+mod fill;
+mod flip;
 mod mesh;
+mod optimise;
+mod order;
+mod recover;
+mod seeds;
+mod shape;
+mod sizing;
+mod sphere;
+mod store;
 mod surface;
 
+pub use error::TetError;
+pub use fill::{Filled, fill};
 pub use mesh::{FACES, FaceGroup, FaceRole, MarkedFace, MeshFault, Tet, TetMesh, face_key, volume};
+pub use recover::{EdgeSplit, RecoveryReport};
+pub use sizing::{Sizing, SizingSettings};
 pub use surface::{Surface, SurfaceFacet};
