@@ -4,6 +4,7 @@
 //! PatchParams, map --block--> Block (tets of the antenna) --skin + sphere--> Surface --fill--> TetMesh
 //! ```
 
+pub mod block;
 mod classify;
 mod delaunay;
 mod error;
@@ -20,6 +21,7 @@ mod sphere;
 mod store;
 mod surface;
 
+pub use block::{Block, BlockError, BlockFault, BlockSettings, Metal};
 pub use error::TetError;
 pub use fill::{Filled, fill};
 pub use mesh::{FACES, FaceGroup, FaceRole, MarkedFace, MeshFault, Tet, TetMesh, face_key, volume};

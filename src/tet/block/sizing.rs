@@ -1,0 +1,95 @@
+//! How long the edges of the footprint should be at a place.
+//!
+//! The rim of the patch rules the accuracy of the field, so lengths start there, and at the segments of the feed's
+//! circles, and grow linearly to the length wanted inside the block.
+
+use super::{BlockError, BlockSettings};
+use crate::antenna::PatchParams;
+use crate::geometry::DVec2;
+use std::f64::consts::TAU;
+
+/// Growth of the edge length per distance: above it neighboring triangles differ too much to be well shaped, below it
+/// the fine rim costs more triangles than it is worth.
+const SLOPE: f64 = 0.3;
+/// Width of the strip on both sides of the rim in which lengths do not grow yet, in rim lengths: the field's
+/// singularity at the edge wants two even rows of triangles.
+const STRIP: f64 = 0.75;
+/// Fewest segments of the pin's and the outer conductor's polygon: with fewer their triangles have angles that no
+/// placing of inner points mends.
+const MIN_SEGMENTS: [usize; 2] = [10, 20];
+/// Greatest number of points expected of a footprint; a million of tetrahedra in four layers.
+const MAX_POINTS: f64 = 50_000.0;
+
+/// A circle of the feed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Circle {
+    pub(super) center: DVec2,
+    pub(super) radius: f64,
+    /// Segments of the polygon that stands for it.
+    pub(super) segments: usize,
+}
+
+impl Circle {
+    /// Length of a segment, m.
+    pub(super) fn segment(&self) -> f64 {
+        TAU * self.radius / self.segments as f64
+    }
+}
+
+/// The wanted edge length as a function of the place.
+#[derive(Clone, Debug)]
+pub(super) struct Sizing {
+    /// Half the patch's extents, m.
+    patch: DVec2,
+    rim: f64,
+    inner: f64,
+    /// The pin's and the outer conductor's circle; none without a feed.
+    pub(super) circles: Vec<Circle>,
+}
+
+impl Sizing {
+    /// Checks the settings and takes the lengths from them and from valid parameters.
+    pub(super) fn new(params: &PatchParams, settings: &BlockSettings) -> Result<Self, BlockError> {
+        for (field, value) in [("rim", settings.rim), ("inner", settings.inner)] {
+            if !(value.is_finite() && value > 0.0) {
+                return Err(BlockError::Length { field, value });
+            }
+        }
+        if settings.layers == 0 {
+            return Err(BlockError::NoLayers);
+        }
+        let circle =
+            |radius, segments: usize, fewest| Circle { center: params.feed(), radius, segments: segments.max(fewest) };
+        let pin = circle(params.pin_radius, params.pin_segments, MIN_SEGMENTS[0]);
+        let sheath = circle(params.coax_radius, params.coax_segments, MIN_SEGMENTS[1]);
+        let sizing = Self {
+            patch: DVec2::new(params.width, params.length) / 2.0,
+            rim: settings.rim.min(settings.inner),
+            inner: settings.inner,
+            circles: if settings.coax { vec![pin, sheath] } else { Vec::new() },
+        };
+        let n_points = sizing.n_points(params.ground_width * params.ground_length);
+        if n_points > MAX_POINTS {
+            return Err(BlockError::TooFine { n_points });
+        }
+        Ok(sizing)
+    }
+
+    /// Edge length wanted at a place, m.
+    pub(super) fn at(&self, p: DVec2) -> f64 {
+        let off = p.abs() - self.patch;
+        let to_rim = if off.max_element() > 0.0 { off.max(DVec2::ZERO).length() } else { -off.max_element() };
+        let from_rim = self.rim + SLOPE * (to_rim - STRIP * self.rim).max(0.0);
+        let from_circle = |c: &Circle| c.segment() + SLOPE * (p.distance(c.center) - c.radius).abs();
+        self.circles.iter().map(from_circle).fold(self.inner.min(from_rim), f64::min)
+    }
+
+    /// About the number of points of a footprint of some area, m².
+    fn n_points(&self, area: f64) -> f64 {
+        // Along a line, the integral of 1 / h² over the growth on both sides; triangles are near equilateral.
+        let along = |length: f64, h: f64| 2.0 * length / (SLOPE * h);
+        let rim = along(4.0 * self.patch.element_sum(), self.rim);
+        let circles: f64 = self.circles.iter().map(|c| along(c.segment() * c.segments as f64, c.segment())).sum();
+        (area / self.inner.powi(2) + rim + circles) * 2.0 / 3.0_f64.sqrt()
+    }
+}
