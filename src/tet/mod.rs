@@ -19,6 +19,7 @@ mod shape;
 mod sizing;
 mod sphere;
 mod store;
+mod quality;
 mod surface;
 
 pub use block::{Block, BlockError, BlockFault, BlockSettings, Metal};
@@ -27,4 +28,8 @@ pub use fill::{Filled, fill};
 pub use mesh::{FACES, FaceGroup, FaceRole, MarkedFace, MeshFault, Tet, TetMesh, face_key, volume};
 pub use recover::{EdgeSplit, RecoveryReport};
 pub use sizing::{Sizing, SizingSettings};
+pub use quality::{
+    BIN_WIDTH, CellStatistics, EdgeFit, N_BINS, QualityReport, RegionQuality, SizeFn, TetQuality, WorstCell, quality,
+    tet_qualities,
+};
 pub use surface::{Surface, SurfaceFacet};
