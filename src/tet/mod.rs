@@ -32,4 +32,4 @@ pub use quality::{
     BIN_WIDTH, CellStatistics, EdgeFit, N_BINS, QualityReport, RegionQuality, SizeFn, TetQuality, WorstCell, quality,
     tet_qualities,
 };
-pub use surface::{Surface, SurfaceFacet};
+pub use surface::{Surface, SurfaceFacet, SurfaceFault};
