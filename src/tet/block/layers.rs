@@ -8,7 +8,7 @@ use crate::units::MM;
 
 /// Thickness of the uppermost substrate layer relative to the lowest: the field is strongest at the patch's rim. Much
 /// less flattens the tetrahedra where the footprint is coarse.
-const TAPER: f64 = 0.8;
+const TAPER: f64 = 1.0;
 /// Greatest thickness of a layer of the line below the ground, m.
 const LINE_LAYER: f64 = 0.55 * MM;
 

@@ -9,8 +9,10 @@ use crate::antenna::PatchParams;
 use crate::geometry::DVec2;
 use std::f64::consts::{PI, TAU};
 
+/// Longest arc beyond a side of the patch, in segments, that becomes a chord along it.
+const CHORD: f64 = 1.5;
 /// Samples of the wanted length along a piece of an outline; they resolve its growth from the shortest edges.
-const SAMPLES: usize = 400;
+const SAMPLES: usize = 200;
 
 /// Divided outlines: what the triangulation must respect.
 #[derive(Clone, Debug, Default)]
@@ -44,12 +46,11 @@ impl Outlines {
         let ground = DVec2::new(params.ground_width, params.ground_length) / 2.0;
         let mut outlines = Self { patch, ground, ..Self::default() };
         let mut cuts: Vec<(usize, usize)> = Vec::new();
-        let mut chords: Vec<[usize; 2]> = Vec::new();
         for circle in &sizing.circles {
-            outlines.add_circle(circle, &mut cuts, &mut chords);
+            outlines.add_circle(circle, sizing, &mut cuts);
         }
-        outlines.add_rectangle(patch, sizing, &cuts, &chords);
-        outlines.add_rectangle(ground, sizing, &[], &[]);
+        outlines.add_rectangle(patch, sizing, &cuts);
+        outlines.add_rectangle(ground, sizing, &[]);
         outlines
     }
 
@@ -58,39 +59,36 @@ impl Outlines {
         self.points.len() - 1
     }
 
-    /// Adds a circle's polygon; its crossings with the patch's sides go to `cuts` (side, point), and the segments of
-    /// it that run along a side to `chords`.
-    fn add_circle(&mut self, circle: &Circle, cuts: &mut Vec<(usize, usize)>, chords: &mut Vec<[usize; 2]>) {
+    /// Adds a circle's polygon; its crossings with the patch's sides go to `cuts`, as side and point.
+    fn add_circle(&mut self, circle: &Circle, sizing: &Sizing, cuts: &mut Vec<(usize, usize)>) {
         let crossings = crossings(circle, self.patch);
         let on_circle = |angle: f64| circle.center + circle.radius * DVec2::new(angle.sin(), -angle.cos());
         let step = TAU / circle.segments as f64;
-        let first = self.points.len();
-        for (k, crossing) in crossings.iter().enumerate() {
-            let corner = self.point(crossing.point);
-            cuts.push((crossing.side, corner));
-            let next = &crossings[(k + 1) % crossings.len()];
-            let arc = (next.angle - crossing.angle).rem_euclid(TAU);
-            let n = pieces(arc / step);
-            if n == 1 && next.side == crossing.side {
-                chords.push([corner, if k + 1 < crossings.len() { corner + 1 } else { first }]);
-            }
-            for m in 1..n {
-                self.point(on_circle(crossing.angle + arc * m as f64 / n as f64));
+        let corners: Vec<(f64, usize)> = if crossings.is_empty() {
+            // As the surface complex has them.
+            let angles = (0..circle.segments).map(|k| step * (k as f64 + 0.5));
+            angles.map(|angle| (angle, self.point(on_circle(angle)))).collect()
+        } else {
+            crossings.iter().map(|c| (c.angle, self.point(c.point))).collect()
+        };
+        cuts.extend(crossings.iter().zip(&corners).map(|(crossing, corner)| (crossing.side, corner.1)));
+        let mut polygon = Vec::new();
+        for (k, &(angle, corner)) in corners.iter().enumerate() {
+            let (next_angle, next) = corners[(k + 1) % corners.len()];
+            let arc = (next_angle - angle).rem_euclid(TAU);
+            let along_side = crossings.get(k).is_some_and(|c| c.side == crossings[(k + 1) % crossings.len()].side);
+            polygon.push(self.points[corner]);
+            if !(along_side && arc < CHORD * step) {
+                let before = self.points.len();
+                self.divide([corner, next], circle.radius * arc, sizing, |t| on_circle(angle + arc * t));
+                polygon.extend(&self.points[before..]);
             }
         }
-        if crossings.is_empty() {
-            for k in 0..circle.segments {
-                self.point(on_circle(step * (k as f64 + 0.5)));
-            }
-        }
-        let n = self.points.len() - first;
-        let sides = (0..n).map(|k| [first + k, first + (k + 1) % n]);
-        self.segments.extend(sides.filter(|side| !chords.contains(side)));
-        self.polygons.push(self.points[first..].to_vec());
+        self.polygons.push(polygon);
     }
 
-    /// Adds an axis-parallel rectangle about the origin, through the `cuts`; a piece among `chords` is not divided.
-    fn add_rectangle(&mut self, half: DVec2, sizing: &Sizing, cuts: &[(usize, usize)], chords: &[[usize; 2]]) {
+    /// Adds an axis-parallel rectangle about the origin, through the `cuts`.
+    fn add_rectangle(&mut self, half: DVec2, sizing: &Sizing, cuts: &[(usize, usize)]) {
         let corners = [DVec2::new(-1.0, -1.0), DVec2::new(1.0, -1.0), DVec2::ONE, DVec2::new(-1.0, 1.0)];
         let corners = corners.map(|c| self.point(c * half));
         for side in 0..4 {
@@ -103,27 +101,21 @@ impl Outlines {
                 along(a).total_cmp(&along(b))
             });
             for piece in stops.windows(2) {
-                let piece = [piece[0], piece[1]];
-                if chords.contains(&piece) || chords.contains(&[piece[1], piece[0]]) {
-                    self.segments.push(piece);
-                } else {
-                    self.divide(piece, sizing);
-                }
+                let (a, b) = (self.points[piece[0]], self.points[piece[1]]);
+                // Not `lerp`, which would leave the line by a rounding error.
+                self.divide([piece[0], piece[1]], a.distance(b), sizing, |t| a + (b - a) * t);
             }
         }
     }
 
-    /// Divides a straight piece so that each part is as long as wanted at its place.
-    fn divide(&mut self, [from, to]: [usize; 2], sizing: &Sizing) {
-        let (a, b) = (self.points[from], self.points[to]);
-        let length = a.distance(b);
+    /// Divides a piece of an outline, given by its ends, its length and its path from 0 to 1, so that each part is as
+    /// long as wanted at its place.
+    fn divide(&mut self, [from, to]: [usize; 2], length: f64, sizing: &Sizing, path: impl Fn(f64) -> DVec2) {
         // Trapezoidal running integral of ds / h.
-        // Not `lerp`, which would leave the line by a rounding error.
-        let place = |t: f64| a + (b - a) * t;
         let part = |k: usize| k as f64 / SAMPLES as f64;
         let mut count = vec![0.0];
         for k in 0..SAMPLES {
-            let density = [k, k + 1].map(|k| 1.0 / sizing.at(place(part(k)))).iter().sum::<f64>() / 2.0;
+            let density = [k, k + 1].map(|k| 1.0 / sizing.at(path(part(k)))).iter().sum::<f64>() / 2.0;
             count.push(count[k] + density * length / SAMPLES as f64);
         }
         let total = count[SAMPLES];
@@ -133,7 +125,7 @@ impl Outlines {
             let wanted = total * m as f64 / n as f64;
             let k = count.partition_point(|&c| c < wanted).max(1);
             let t = (k - 1) as f64 + (wanted - count[k - 1]) / (count[k] - count[k - 1]);
-            let next = self.point(place(t / SAMPLES as f64));
+            let next = self.point(path(t / SAMPLES as f64));
             self.segments.push([last, next]);
             last = next;
         }

@@ -3,17 +3,24 @@
 //! The rim of the patch rules the accuracy of the field, so lengths start there, and at the segments of the feed's
 //! circles, and grow linearly to the length wanted inside the block.
 
-use super::{BlockError, BlockSettings};
+use super::{BlockError, BlockSettings, Metal};
 use crate::antenna::PatchParams;
 use crate::geometry::DVec2;
 use std::f64::consts::TAU;
 
 /// Growth of the edge length per distance: above it neighboring triangles differ too much to be well shaped, below it
 /// the fine rim costs more triangles than it is worth.
-const SLOPE: f64 = 0.3;
+const SLOPE: f64 = 0.22;
 /// Width of the strip on both sides of the rim in which lengths do not grow yet, in rim lengths: the field's
 /// singularity at the edge wants two even rows of triangles.
 const STRIP: f64 = 0.75;
+/// Lengths aimed at inside, relative to the greatest wanted: the packing leaves edges up to an eighth longer.
+const AIM: f64 = 0.88;
+/// Greatest edge of the sheath within a solid ground, in thicknesses of it: longer ones make its tetrahedra, the
+/// flattest of all that carry a field, flatter still.
+const SHEATH: f64 = 12.0;
+/// The least that this asks for, in segments of the outer conductor: thin foil must not make the mesh grow without end.
+const SHEATH_LEAST: f64 = 0.8;
 /// Fewest segments of the pin's and the outer conductor's polygon: with fewer their triangles have angles that no
 /// placing of inner points mends.
 const MIN_SEGMENTS: [usize; 2] = [10, 20];
@@ -43,6 +50,8 @@ pub(super) struct Sizing {
     patch: DVec2,
     rim: f64,
     inner: f64,
+    /// Greatest length within the outer conductor.
+    sheath: f64,
     /// The pin's and the outer conductor's circle; none without a feed.
     pub(super) circles: Vec<Circle>,
 }
@@ -64,8 +73,12 @@ impl Sizing {
         let sheath = circle(params.coax_radius, params.coax_segments, MIN_SEGMENTS[1]);
         let sizing = Self {
             patch: DVec2::new(params.width, params.length) / 2.0,
-            rim: settings.rim.min(settings.inner),
-            inner: settings.inner,
+            rim: settings.rim.min(AIM * settings.inner),
+            inner: AIM * settings.inner,
+            sheath: match settings.metal {
+                Metal::Sheet => f64::INFINITY,
+                Metal::Solid => (SHEATH * params.ground_thickness).max(SHEATH_LEAST * sheath.segment()),
+            },
             circles: if settings.coax { vec![pin, sheath] } else { Vec::new() },
         };
         let n_points = sizing.n_points(params.ground_width * params.ground_length);
@@ -80,8 +93,12 @@ impl Sizing {
         let off = p.abs() - self.patch;
         let to_rim = if off.max_element() > 0.0 { off.max(DVec2::ZERO).length() } else { -off.max_element() };
         let from_rim = self.rim + SLOPE * (to_rim - STRIP * self.rim).max(0.0);
-        let from_circle = |c: &Circle| c.segment() + SLOPE * (p.distance(c.center) - c.radius).abs();
-        self.circles.iter().map(from_circle).fold(self.inner.min(from_rim), f64::min)
+        let from_circles = self.circles.iter().map(|c| {
+            let away = p.distance(c.center) - c.radius;
+            let from_circle = c.segment() + SLOPE * away.abs();
+            if away <= 0.0 { from_circle.min(self.sheath) } else { from_circle.min(self.sheath + SLOPE * away) }
+        });
+        from_circles.fold(self.inner.min(from_rim), f64::min)
     }
 
     /// About the number of points of a footprint of some area, m².
