@@ -5,6 +5,7 @@ use crate::cage::{CageError, PoseError, PresetError};
 use crate::deform::DeformError;
 use crate::distortion::CompensationError;
 use crate::task::Cancelled;
+use crate::tet::{BlockError, EncloseError, TetError};
 
 /// Why a project could not be computed; the message says what to change.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -78,9 +79,30 @@ pub enum PipelineError {
         /// z of the first place, mm.
         z_mm: f64,
     },
+    /// The antenna or the air around it cannot be meshed.
+    #[error("mesh: {0}")]
+    Mesh(EncloseError),
+    /// A cylinder was asked for where there is none.
+    #[error("there is no exact cylinder: only a single bend without hand edits has one")]
+    NoCylinder,
     /// Called off.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+}
+
+impl From<EncloseError> for PipelineError {
+    fn from(error: EncloseError) -> Self {
+        match error {
+            EncloseError::Air(TetError::Cancelled(cancelled)) => Self::Cancelled(cancelled),
+            other => Self::Mesh(other),
+        }
+    }
+}
+
+impl From<BlockError> for PipelineError {
+    fn from(error: BlockError) -> Self {
+        Self::Mesh(error.into())
+    }
 }
 
 impl From<DeformError> for PipelineError {

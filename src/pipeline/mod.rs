@@ -12,6 +12,7 @@
 mod error;
 mod fields;
 pub mod live;
+mod mesh;
 mod retreat;
 mod scene;
 mod stages;
@@ -20,6 +21,7 @@ pub mod worker;
 
 pub use error::PipelineError;
 pub use fields::Fields;
+pub use mesh::{Density, MeshSettings, Meshed, Shape, mesh};
 pub use retreat::retreat;
 pub use scene::Scene;
 pub use stages::{Deformed, Stages, apply_cage, deform, exact_cylinder, flat, run};

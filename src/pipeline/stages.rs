@@ -83,14 +83,9 @@ pub fn deform(project: &Project, task: &Task) -> Result<Deformed, PipelineError>
 /// As [`deform`].
 pub fn run(project: &Project, task: &Task) -> Result<Stages, PipelineError> {
     let started = Instant::now();
-    let scene = Scene::new(project)?;
-    scene.checked_pose()?;
-    let compensated = compensate(project, &scene, task)?;
+    let Prepared { scene, compensated, built } = prepare(project, task)?;
     let posed = compensated.map.pose().vertices().to_vec();
-    crate::cage::check_pose(&scene.cage, &posed)?;
-    let built = scaled(&scene.params, compensated.patch_scale);
     let sheet = |scale| Sheet { scale, warp: &compensated.warp, map: &compensated.map };
-    check_folds(&sheet(DVec2::ONE), &scene.params)?;
     let carry = Carry::new(&compensated.map, &compensated.warp, Scene::feed(&built))?;
     let surface = guarded_split(&built, &carry, project.settings.tolerance_mm, task)?;
     let positions = surface.positions();
@@ -116,6 +111,26 @@ pub fn run(project: &Project, task: &Task) -> Result<Stages, PipelineError> {
         seconds: started.elapsed().as_secs_f64(),
     };
     Ok(Stages { scene, compensated, built, placement, reference, deformed })
+}
+
+/// A project's checked and compensated map, before any surface is carried by it.
+#[derive(Clone, Debug)]
+pub(super) struct Prepared {
+    pub(super) scene: Scene,
+    pub(super) compensated: Compensated,
+    /// The antenna to be built: the one drawn, with the patch scaled where the patch alone is compensated.
+    pub(super) built: PatchParams,
+}
+
+/// Checks a project, compensates it, and refuses a map that folds.
+pub(super) fn prepare(project: &Project, task: &Task) -> Result<Prepared, PipelineError> {
+    let scene = Scene::new(project)?;
+    scene.checked_pose()?;
+    let compensated = compensate(project, &scene, task)?;
+    crate::cage::check_pose(&scene.cage, compensated.map.pose().vertices())?;
+    let built = scaled(&scene.params, compensated.patch_scale);
+    check_folds(&Sheet { scale: DVec2::ONE, warp: &compensated.warp, map: &compensated.map }, &scene.params)?;
+    Ok(Prepared { scene, compensated, built })
 }
 
 /// The flat surface complex of a project, as drawn.
