@@ -16,7 +16,7 @@ pub mod predicates;
 pub mod tri_mesh;
 
 pub use chebyshev::chebyshev;
-pub use glam::{DMat2, DMat3, DVec2, DVec3};
+pub use glam::{DMat2, DMat3, DQuat, DVec2, DVec3};
 pub use id::{FaceId, RegionId, TetId, VertexId};
 pub use plc::{Facet, Plc, PlcError, Region, RegionRole};
 pub use tri_mesh::{SurfaceError, TriMesh};

@@ -15,20 +15,22 @@ use crate::geometry::{DVec3, TetId, VertexId};
 use crate::task::Task;
 use std::collections::HashSet;
 
-/// Rounds over everything that is missing; the first ones bring nearly all of it.
-const MAX_ROUNDS: usize = 24;
+/// Rounds over everything that is missing; the first one brings nearly all of it.
+const MAX_ROUNDS: usize = 32;
 /// From this round on, helper points are put beside faces that resist.
 const HELPERS_FROM: usize = 1;
 /// From this round on, edges of the surface are halved.
-const SPLITS_FROM: usize = 5;
+const SPLITS_FROM: usize = 3;
 /// Ways tried for one edge before it waits for the next round.
 const EDGE_ATTEMPTS: usize = 60;
 /// Attempts before an edge may remove others recursively, which costs more.
 const DEEP_FROM: usize = 3;
 /// Levels of edges removed to make room for the removal of another.
 const DEPTH: usize = 2;
-/// Edge and face operations per facet of the surface, after which the surface is given up: usual ones need a few.
-const BUDGET_PER_FACET: usize = 400;
+/// Operations spent on one edge or facet in one round: what has not come back by then needs another round, or a split.
+const BUDGET_PER_ITEM: usize = 600;
+/// Operations per facet of the surface, after which the surface is given up: usual ones need a few.
+const BUDGET_PER_FACET: usize = 2000;
 
 /// A surface edge that had to be halved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,15 +61,17 @@ pub(super) struct Recovery<'a> {
     pub(super) facets: Vec<SurfaceFacet>,
     /// Edges of the facets: never flipped away.
     edges: HashSet<EdgeKey>,
+    /// Operations left for the whole surface, and for the edge or facet at hand.
     budget: usize,
+    item_budget: usize,
     pub(super) report: RecoveryReport,
 }
 
 impl<'a> Recovery<'a> {
     pub(super) fn new(mesh: &'a mut Triangulation, facets: &[SurfaceFacet]) -> Self {
         let edges = facets.iter().flat_map(|f| edges_of(f.vertices)).collect();
-        let budget = BUDGET_PER_FACET * facets.len() + 10_000;
-        Self { mesh, facets: facets.to_vec(), edges, budget, report: RecoveryReport::default() }
+        let budget = BUDGET_PER_FACET * facets.len() + 100_000;
+        Self { mesh, facets: facets.to_vec(), edges, budget, item_budget: 0, report: RecoveryReport::default() }
     }
 
     /// Recovers everything.
@@ -86,6 +90,14 @@ impl<'a> Recovery<'a> {
             if round == 0 {
                 (self.report.n_missing_edges, self.report.n_missing_facets) = (n_edges, n_facets);
             }
+            eprintln!(
+                "round {round}: edges {n_edges} left {} facets {n_facets} left {} budget {} helpers {} splits {}",
+                missing_edges.len(),
+                missing_facets.len(),
+                self.budget,
+                self.report.n_helpers,
+                self.report.splits.len()
+            );
             if n_edges == 0 && n_facets == 0 {
                 return Ok(());
             }
@@ -151,10 +163,12 @@ impl<'a> Recovery<'a> {
 
     fn spend(&mut self) -> bool {
         self.budget = self.budget.saturating_sub(1);
-        self.budget > 0
+        self.item_budget = self.item_budget.saturating_sub(1);
+        self.budget > 0 && self.item_budget > 0
     }
 
     fn recover_edge(&mut self, edge: EdgeKey) -> bool {
+        self.item_budget = BUDGET_PER_ITEM;
         for attempt in 0..EDGE_ATTEMPTS {
             let [a, b] = if attempt % 2 == 0 { edge } else { [edge[1], edge[0]] };
             if self.tet_with(&[a, b]).is_some() {
@@ -265,6 +279,7 @@ impl<'a> Recovery<'a> {
     }
 
     fn recover_facet(&mut self, facet: [VertexId; 3]) -> bool {
+        self.item_budget = BUDGET_PER_ITEM;
         for _ in 0..20 {
             if self.tet_with(&facet).is_some() {
                 return true;

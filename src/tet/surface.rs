@@ -140,13 +140,16 @@ impl Surface {
     /// Volume of each region by the divergence theorem, m³, by region number; the outside's is minus their sum.
     #[must_use]
     pub fn volumes(&self) -> Vec<f64> {
-        let origin = self.vertices.first().copied().unwrap_or_default();
+        // About a vertex of each region's own: a small region far away would lose digits about another point.
+        let mut origins: Vec<Option<DVec3>> = vec![None; self.regions.len()];
         let mut volumes = vec![0.0; self.regions.len()];
         for (f, facet) in self.facets.iter().enumerate() {
-            let [a, b, c] = self.corners(f).map(|p| p - origin);
-            let part = a.dot(b.cross(c)) / 6.0;
-            volumes[facet.back.index()] += part;
-            volumes[facet.front.index()] -= part;
+            let corners = self.corners(f);
+            for (region, sign) in [(facet.back, 1.0), (facet.front, -1.0)] {
+                let origin = *origins[region.index()].get_or_insert(corners[0]);
+                let [a, b, c] = corners.map(|p| p - origin);
+                volumes[region.index()] += sign * a.dot(b.cross(c)) / 6.0;
+            }
         }
         volumes
     }
