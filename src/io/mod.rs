@@ -20,6 +20,7 @@
 mod atomic;
 mod certificate;
 pub mod csv;
+mod decimal;
 mod error;
 mod export;
 pub mod gltf;

@@ -6,6 +6,7 @@
 //! (cut as a fan from their first corner, right for convex ones); every other statement is passed over.
 
 use super::certificate::Material;
+use super::decimal::{MM_DIGITS, number, shifted_digits};
 use super::error::{IoError, ParseError, Place, read};
 use super::stl::shorten;
 use crate::geometry::{DVec3, Plc, TriMesh, VertexId};
@@ -13,8 +14,6 @@ use std::collections::HashMap;
 use std::fmt::Write;
 use std::path::Path;
 
-/// Decimal places between the metres of the core and the millimetres of our files.
-const MM_DIGITS: i32 = 3;
 const REGION_COMMENT: &str = "# region ";
 
 /// What an OBJ file holds.
@@ -142,66 +141,9 @@ fn corner(word: &str, n_vertices: usize, place: Place) -> Result<VertexId, Parse
     }
 }
 
-/// The shortest decimal digits that give `value` back, times ten to the power `digits`, exactly.
-fn shifted_digits(value: f64, digits: i32) -> String {
-    if value == 0.0 {
-        return "0".to_owned();
-    }
-    let scientific = format!("{value:e}");
-    let (mantissa, exponent) = scientific.split_once('e').expect("the format has an exponent");
-    let exponent = exponent.parse::<i32>().expect("an exponent of at most three digits") + digits;
-    let (sign, mantissa) = mantissa.strip_prefix('-').map_or(("", mantissa), |rest| ("-", rest));
-    let plain: String = mantissa.chars().filter(|&c| c != '.').collect();
-    match usize::try_from(exponent) {
-        Ok(whole) if whole + 1 < plain.len() => format!("{sign}{}.{}", &plain[..=whole], &plain[whole + 1..]),
-        Ok(whole) if whole < 16 => format!("{sign}{plain:0<width$}", width = whole + 1),
-        Err(_) if exponent > -7 => format!("{sign}0.{}{plain}", "0".repeat((-exponent - 1).unsigned_abs() as usize)),
-        _ => format!("{sign}{mantissa}e{exponent}"),
-    }
-}
-
-/// Parses a finite number and divides it by ten to the power `digits` with a single rounding.
-fn number(word: &str, digits: i32) -> Option<f64> {
-    let value: f64 = word.parse().ok().filter(|v: &f64| v.is_finite())?;
-    if digits == 0 {
-        return Some(value);
-    }
-    let (mantissa, exponent) = word.split_once(['e', 'E']).unwrap_or((word, "0"));
-    match exponent.parse::<i32>().ok().and_then(|e| e.checked_sub(digits)) {
-        Some(exponent) => format!("{mantissa}e{exponent}").parse().ok(),
-        // Finite with an exponent beyond 32 bits: its digits are all zero, or it is far below the smallest number.
-        None => Some(value),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn millimetres_in_text_are_metres_bit_for_bit() {
-        let mut rng = fastrand::Rng::with_seed(41);
-        for case in 0..20_000 {
-            let value = (rng.f64() - 0.5) * 10_f64.powi(rng.i32(-9..4));
-            let text = shifted_digits(value, MM_DIGITS);
-            assert_eq!(
-                number(&text, MM_DIGITS).map(f64::to_bits),
-                Some(value.to_bits()),
-                "case {case}: {value:e} {text}"
-            );
-            let mm: f64 = text.parse().unwrap();
-            assert!((mm - value * 1e3).abs() <= 4.0 * f64::EPSILON * mm.abs(), "{value:e} m is {text} mm");
-        }
-    }
-
-    #[test]
-    fn digits_are_plain_where_people_read_them() {
-        let cases =
-            [(0.01, "10"), (0.001_575, "1.575"), (-0.000_035, "-0.035"), (0.0, "0"), (1.2, "1200"), (1e-12, "1e-9")];
-        for (metres, text) in cases {
-            assert_eq!(shifted_digits(metres, MM_DIGITS), text, "{metres} m");
-        }
-    }
 
     #[test]
     fn indices_of_every_form_and_polygons_are_read() {
