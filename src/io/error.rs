@@ -2,6 +2,7 @@
 
 use super::proof::Fault;
 use crate::geometry::{PlcError, SurfaceError};
+use crate::tet::SurfaceFault;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -106,6 +107,22 @@ pub enum IoError {
     BadName {
         /// The name.
         region: String,
+    },
+    /// The name of a region or a group of faces cannot stand in a mesh file, or stands twice.
+    #[error(
+        "\"{name}\" cannot name a part of a mesh file: use each name once, of 1 to 127 characters without quotes and control characters"
+    )]
+    BadPartName {
+        /// The name.
+        name: String,
+    },
+    /// The surface in the file, or to be written, cannot be filled.
+    #[error("{}: {source}", path.display())]
+    BadSurface {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong; facets and vertices are counted as in the file, from 0.
+        source: SurfaceFault,
     },
     /// A region's permittivity or loss tangent is not a finite number.
     #[error("region \"{region}\" has eps_r {eps_r} and tan_delta {tan_delta}: both must be finite numbers")]

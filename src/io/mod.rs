@@ -7,6 +7,9 @@
 //!      <--import--'
 //! ```
 //!
+//! A tetrahedral mesh leaves as one file for other solvers and viewers ([`msh`], [`nastran`], [`vtu`]), each region and
+//! each group of faces under its name.
+//!
 //! STL is single precision: each vertex of the whole complex is rounded once (and shifted, where a reader would drop a
 //! solid at coordinates <= 0), so solids that touched still agree bit for bit in their separate files. The
 //! [`Certificate`] states what is proved of these bytes ([`proof`]): each solid closed and outward, each interface
@@ -25,11 +28,15 @@ mod error;
 mod export;
 pub mod gltf;
 mod import;
+pub mod msh;
+pub mod nastran;
 pub mod obj;
+mod parts;
 pub mod proof;
 mod rounding;
 pub mod stl;
 mod verify;
+pub mod vtu;
 mod weld;
 
 #[cfg(test)]

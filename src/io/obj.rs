@@ -6,7 +6,7 @@
 //! (cut as a fan from their first corner, right for convex ones); every other statement is passed over.
 
 use super::certificate::Material;
-use super::decimal::{MM_DIGITS, number, shifted_digits};
+use super::decimal::{MM_DIGITS, millimetres, number};
 use super::error::{IoError, ParseError, Place, read};
 use super::stl::shorten;
 use crate::geometry::{DVec3, Plc, TriMesh, VertexId};
@@ -44,8 +44,7 @@ pub(super) fn encode(plc: &Plc) -> Vec<u8> {
         text.extend([REGION_COMMENT, &material, "\n"]);
     }
     for vertex in &plc.vertices {
-        let [x, y, z] = vertex.to_array().map(|c| shifted_digits(c, MM_DIGITS));
-        text.extend(["v ", &x, " ", &y, " ", &z, "\n"]);
+        text.extend(["v ", &millimetres(*vertex), "\n"]);
     }
     for (id, region) in plc.solids() {
         text.extend(["g ", &region.name, "\n"]);
