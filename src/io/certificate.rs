@@ -42,22 +42,34 @@ pub enum Role {
     Conductor,
 }
 
+impl From<RegionRole> for Role {
+    fn from(role: RegionRole) -> Self {
+        match role {
+            RegionRole::Air => Self::Air,
+            RegionRole::Dielectric => Self::Dielectric,
+            RegionRole::Conductor => Self::Conductor,
+        }
+    }
+}
+
+impl From<Role> for RegionRole {
+    fn from(role: Role) -> Self {
+        match role {
+            Role::Air => Self::Air,
+            Role::Dielectric => Self::Dielectric,
+            Role::Conductor => Self::Conductor,
+        }
+    }
+}
+
 impl Material {
     pub(super) fn of(region: &Region) -> Self {
-        let role = match region.role {
-            RegionRole::Air => Role::Air,
-            RegionRole::Dielectric => Role::Dielectric,
-            RegionRole::Conductor => Role::Conductor,
-        };
+        let role = region.role.into();
         Self { material: region.name.clone(), role, eps_r: region.eps_r, tan_delta: region.tan_delta }
     }
 
     pub(super) fn into_region(self) -> Region {
-        let role = match self.role {
-            Role::Air => RegionRole::Air,
-            Role::Dielectric => RegionRole::Dielectric,
-            Role::Conductor => RegionRole::Conductor,
-        };
+        let role = self.role.into();
         Region { name: self.material, role, eps_r: self.eps_r, tan_delta: self.tan_delta }
     }
 }

@@ -8,7 +8,7 @@
 //! ```
 //!
 //! A tetrahedral mesh leaves as one file for other solvers and viewers ([`msh`], [`nastran`], [`vtu`]), each region and
-//! each group of faces under its name.
+//! each group of faces under its name; a surface to be filled enters as [`surface_json`].
 //!
 //! STL is single precision: each vertex of the whole complex is rounded once (and shifted, where a reader would drop a
 //! solid at coordinates <= 0), so solids that touched still agree bit for bit in their separate files. The
@@ -35,6 +35,7 @@ mod parts;
 pub mod proof;
 mod rounding;
 pub mod stl;
+pub mod surface_json;
 mod verify;
 pub mod vtu;
 mod weld;
