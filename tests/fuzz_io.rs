@@ -2,7 +2,7 @@
 
 use conformant::geometry::{DVec3, Facet, Plc, Region, RegionId, RegionRole, VertexId};
 use conformant::io::{
-    CERTIFICATE_FILE, ExportOptions, GLTF_FILE, OBJ_FILE, csv, export, gltf, import, obj, stl, verify,
+    CERTIFICATE_FILE, ExportOptions, GLTF_FILE, OBJ_FILE, csv, export, gltf, import, obj, stl, surface_json, verify,
 };
 use std::fs;
 use std::path::Path;
@@ -127,6 +127,21 @@ fn mutated_stl_files_give_a_value_or_a_message() {
 fn mutated_obj_and_csv_files_give_a_value_or_a_message() {
     fuzz(&exported(OBJ_FILE), 2000, obj::parse);
     fuzz(b"0.5,1,2\n-1e-3,2,3\n4,5,6\n", 500, csv::parse_points);
+}
+
+#[test]
+fn mutated_surfaces_give_a_value_or_a_message() {
+    let seed = br#"{"regions": {"0": "outside", "1": "substrate", "2": "pin metal"}, "eps_r": {"1": 2.33},
+        "sheet": {"0": "interface", "1": "PEC sheet", "2": "lid"}, "sheet_role": {"2": "outer"},
+        "V": [[0, 0, 0], [1.5, 0, 0], [0, 2.25, 0], [0.1, 0.1, 1], [0.3, 0.2, -1.7]],
+        "F": [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3], [0, 4, 1], [1, 4, 2], [2, 4, 0]],
+        "region_pair": [[1, 2], [1, 0], [1, 0], [1, 0], [2, 0], [2, 0], [2, 0]],
+        "sheet_tag": [0, 2, 2, 1, 0, 0, 0]}"#;
+    let checked = |bytes: &[u8]| {
+        let surface = surface_json::parse(bytes).map_err(|e| e.to_string())?;
+        surface.check().map_err(|e| e.to_string())
+    };
+    fuzz(seed, 2500, checked);
 }
 
 #[test]

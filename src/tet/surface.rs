@@ -179,7 +179,7 @@ impl Surface {
         self.check_closed()?;
         let bounded: Vec<bool> = self.are_bounded();
         let volumes = self.volumes();
-        let inverted = (1..self.regions.len()).find(|&r| bounded[r] && volumes[r] <= 0.0);
+        let inverted = (1..self.regions.len()).find(|&r| bounded[r] && !(volumes[r] > 0.0 && volumes[r].is_finite()));
         inverted.map_or(Ok(()), |r| {
             Err(SurfaceFault::InsideOut { region: self.regions[r].name.clone(), volume: volumes[r] })
         })
