@@ -57,7 +57,7 @@ pub fn write(mesh: &TetMesh, fields: &[CellField<'_>], path: &Path) -> Result<()
         writeln!(out, "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<!-- Conformant mesh, unit mm -->")?;
         for volume in &parts.volumes {
             // Two hyphens would end the comment.
-            writeln!(out, "<!-- region {}: {} -->", volume.tag, volume.name.replace('-', "\u{2010}"))?;
+            writeln!(out, "<!-- region {}: {} -->", volume.tag, volume.name.replace("--", "\u{2010}\u{2010}"))?;
         }
         write_grid(mesh, &geometry, &cells, out)
     })
@@ -87,7 +87,10 @@ fn write_grid(mesh: &TetMesh, geometry: &[Array<'_>; 4], cells: &[Array<'_>], ou
         writeln!(out, "<{section}>")?;
         for Array { kind, name, components, bytes } in arrays {
             let name = name.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;");
-            write!(out, "<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\"")?;
+            // Some readers make a list of lists of an array whose one component is spelled out.
+            let components =
+                if *components > 1 { format!(" NumberOfComponents=\"{components}\"") } else { String::new() };
+            write!(out, "<DataArray type=\"{kind}\" Name=\"{name}\"{components}")?;
             writeln!(out, " format=\"appended\" offset=\"{offset}\"/>")?;
             offset += size_of::<u64>() + bytes.len();
         }
