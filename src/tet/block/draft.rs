@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 /// Shortest edge, in wanted lengths, before one of its ends is taken out.
 const SHORT: f64 = 0.6;
 /// Greatest empty circle, in wanted lengths, before a point is put in; of an equilateral triangle it is 0.58.
-const HOLLOW: f64 = 0.75;
+const HOLLOW: f64 = 0.72;
 /// Angles below this are worth opening, degrees; hardly any larger ones can be reached everywhere.
 const OPEN_BELOW: f64 = 36.0;
 /// Steps tried in opening, in wanted lengths, in eight directions.

@@ -4,13 +4,12 @@ use super::footprint::Cover;
 use super::{BlockSettings, COAX_ID, GROUND_ID, Metal, PATCH_ID, PIN_ID, SUBSTRATE_ID};
 use crate::antenna::PatchParams;
 use crate::geometry::RegionId;
-use crate::units::MM;
 
 /// Thickness of the uppermost substrate layer relative to the lowest: the field is strongest at the patch's rim. Much
 /// less flattens the tetrahedra where the footprint is coarse.
-const TAPER: f64 = 1.0;
-/// Greatest thickness of a layer of the line below the ground, m.
-const LINE_LAYER: f64 = 0.55 * MM;
+const TAPER: f64 = 0.95;
+/// Greatest thickness of a layer of the coaxial line, in radii of its outer conductor; its triangles are about as large.
+const LINE_LAYER: f64 = 0.25;
 
 /// What a layer belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,7 +47,7 @@ impl Layers {
             patch_plane: 0,
         };
         if settings.coax {
-            let n = ((line_top - params.port_plane()) / LINE_LAYER).ceil();
+            let n = ((line_top - params.port_plane()) / (LINE_LAYER * params.coax_radius)).ceil();
             layers.add(Part::Line, line_top, &vec![1.0; whole(n)]);
         }
         if solid {

@@ -15,12 +15,12 @@ const SLOPE: f64 = 0.22;
 /// singularity at the edge wants two even rows of triangles.
 const STRIP: f64 = 0.75;
 /// Lengths aimed at inside, relative to the greatest wanted: the packing leaves edges up to an eighth longer.
-const AIM: f64 = 0.88;
+const AIM: f64 = 0.83;
 /// Greatest edge of the sheath within a solid ground, in thicknesses of it: longer ones make its tetrahedra, the
 /// flattest of all that carry a field, flatter still.
-const SHEATH: f64 = 12.0;
+const SHEATH: f64 = 10.0;
 /// The least that this asks for, in segments of the outer conductor: thin foil must not make the mesh grow without end.
-const SHEATH_LEAST: f64 = 0.8;
+const SHEATH_LEAST: f64 = 0.6;
 /// Fewest segments of the pin's and the outer conductor's polygon: with fewer their triangles have angles that no
 /// placing of inner points mends.
 const MIN_SEGMENTS: [usize; 2] = [10, 20];
