@@ -2,7 +2,7 @@
 
 use super::footprint::Footprint;
 use super::layers::Layers;
-use super::prisms::Prisms;
+use super::prisms::Split;
 use super::{COAX_ID, GROUND_ID, PATCH_ID, PIN_ID};
 use crate::geometry::{RegionId, VertexId};
 use crate::tet::{FaceGroup, FaceRole, MarkedFace, Tet, face_key};
@@ -40,20 +40,20 @@ pub(super) fn face_table(tets: &[Tet]) -> FaceTable {
     table
 }
 
-/// Marks the faces of conductors and of the port, in the order of the tetrahedra.
-pub(super) fn mark(prisms: &Prisms, print: &Footprint, layers: &Layers) -> Vec<MarkedFace> {
-    let table = face_table(&prisms.tets);
+/// Marks the faces of conductors and of the port, in the order of the tetrahedra; `planes` has the plane of each vertex.
+pub(super) fn mark(split: &Split, planes: &[usize], print: &Footprint, layers: &Layers) -> Vec<MarkedFace> {
+    let table = face_table(&split.tets);
     let mut marked = Vec::new();
-    for (t, tet) in prisms.tets.iter().enumerate() {
+    for (t, tet) in split.tets.iter().enumerate() {
         for i in 0..4 {
             let vertices = tet.face(i);
             let Some(&(first, second)) = table.get(&face_key(vertices)) else { continue };
             // A face between two tetrahedra comes up twice and is decided at that with the conductor, if there is one.
             let other = if first == (t, i) { second } else { Some(first) };
-            let beyond = other.map(|(s, _)| prisms.tets[s].region);
-            let [a, b, c] = vertices.map(|v| prisms.plane[v.index()]);
+            let beyond = other.map(|(s, _)| split.tets[s].region);
+            let [a, b, c] = vertices.map(|v| planes[v.index()]);
             let plane = (a == b && b == c).then_some(a);
-            let cover = print.covers[prisms.triangle[t]];
+            let cover = print.covers[split.triangle[t]];
             let group = match (sheet(layers, plane, cover), conductor(tet.region)) {
                 (Some(group), _) => Some(group),
                 (None, Some(group)) => beyond.and_then(conductor).is_none().then_some(group),

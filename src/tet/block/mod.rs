@@ -6,14 +6,14 @@
 //!
 //! 1. All outlines (ground, patch, pin, outer conductor) are cut where they cross, divided, and triangulated together.
 //! 2. The triangles are extruded through the layers: the coaxial line, the substrate, and the metal if it is solid.
-//! 3. Each prism becomes three tetrahedra whose diagonals agree with its neighbors'.
-//! 4. The map carries the vertices; a tetrahedron that it turns over is an error with its place.
+//! 3. The map carries the vertices.
+//! 4. Each prism becomes three tetrahedra whose diagonals agree with its neighbors', chosen for their angles; one that
+//!    the map turns over is an error with its place.
 //!
 //! Parts share their interfaces because they share the triangles. Without thickness the metal is a sheet of marked
 //! faces: foil as thin as a real patch's caps the quality of every mesh and with it the time step.
 //!
-//! The numbering of the mesh depends on parameters and settings, not on the map, so carried blocks can be compared
-//! vertex by vertex.
+//! The vertices and their numbers depend on parameters and settings, not on the map; the diagonals may.
 //!
 //! Not handled: outlines that meet at a sharp angle or leave a narrow gap (a circle that barely clears the rim) bound
 //! the angles there; a map that makes distant parts of the block intersect is not seen here.
@@ -33,6 +33,7 @@ use crate::geometry::predicates::orient3d;
 use crate::geometry::{DVec3, Region, RegionRole, SurfaceError, TriMesh, VertexId};
 use crate::units::to_mm;
 use layers::Layers;
+use prisms::Prisms;
 
 const SUBSTRATE_ID: usize = 2;
 const COAX_ID: usize = 3;
@@ -157,13 +158,18 @@ pub fn build<E: From<BlockError>>(
     params.validate().map_err(BlockError::from)?;
     let print = footprint::triangulate(params, settings)?;
     let layers = Layers::new(params, settings);
-    let prisms = prisms::build(&print, &layers);
-    let faces = marks::mark(&prisms, &print, &layers);
+    let prisms = Prisms::new(&print, &layers);
     let vertices = carry(&prisms.flat)?;
     assert_eq!(vertices.len(), prisms.flat.len(), "one new position per vertex");
-    let (flat, tets) = (prisms.flat, prisms.tets);
-    let block =
-        Block { vertices, flat, tets, faces, regions: regions(params, settings.metal), groups: marks::groups() };
+    let split = prisms.split(&print, &vertices);
+    let block = Block {
+        vertices,
+        faces: marks::mark(&split, &prisms.plane, &print, &layers),
+        flat: prisms.flat,
+        tets: split.tets,
+        regions: regions(params, settings.metal),
+        groups: marks::groups(),
+    };
     block.refuse_folds()?;
     Ok(block)
 }

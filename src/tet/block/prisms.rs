@@ -6,63 +6,96 @@
 //! Both prisms at a wall use its one diagonal, so they always match.
 //!
 //! In each layer the directions start from the columns' numbers and are changed triangle by triangle while that opens
-//! the smallest dihedral angles there.
+//! the smallest dihedral angles there, as the map carried them: where it shears the sheet, the better diagonals follow.
 
 use super::footprint::Footprint;
 use super::layers::Layers;
-use crate::geometry::{DVec3, VertexId};
-use crate::tet::Tet;
+use crate::geometry::{DVec3, RegionId, VertexId};
+use crate::tet::{FACES, Tet, volume};
 use std::collections::{BTreeMap, HashMap};
 
 /// Sweeps over all triangles in choosing directions; it settles in a few.
 const MAX_SWEEPS: usize = 40;
 /// Exponent of a dihedral angle in the cost of a split: high enough that the smallest angles rule.
 const POWER: i32 = 6;
+/// Cost of a tetrahedron that the map turned over: above any other, but below a cycle's.
+const TURNED_OVER: f64 = 1e60;
 
-/// The block before it is carried.
+/// All prisms of the block.
 #[derive(Debug, Default)]
 pub(super) struct Prisms {
-    /// Positions in the flat antenna, m.
+    /// Positions of their corners in the flat antenna, m.
     pub(super) flat: Vec<DVec3>,
-    /// The plane of each vertex.
+    /// The plane of each corner.
     pub(super) plane: Vec<usize>,
+    /// By layer.
+    layers: Vec<Vec<Prism>>,
+}
+
+/// The block over one triangle in one layer.
+#[derive(Clone, Copy, Debug)]
+struct Prism {
+    /// The footprint's triangle.
+    triangle: usize,
+    region: RegionId,
+    /// Corners 0, 1, 2 lie below 3, 4, 5.
+    corners: [VertexId; 6],
+}
+
+/// Tetrahedra, and the footprint's triangle below each.
+#[derive(Debug, Default)]
+pub(super) struct Split {
     pub(super) tets: Vec<Tet>,
-    /// The footprint's triangle below each tetrahedron.
     pub(super) triangle: Vec<usize>,
 }
 
-/// Builds and splits all prisms.
-pub(super) fn build(print: &Footprint, layers: &Layers) -> Prisms {
-    let mut prisms = Prisms::default();
-    let mut columns: HashMap<(usize, usize), VertexId> = HashMap::new();
-    let walls = Walls::new(print);
-    for layer in 0..layers.planes.len() - 1 {
-        let regions: Vec<_> = print.covers.iter().map(|&c| layers.region(layer, c)).collect();
-        let inside: Vec<bool> = regions.iter().map(Option::is_some).collect();
-        let height = layers.planes[layer + 1] - layers.planes[layer];
-        let turns = walls.choose(print, &inside, height);
-        for (t, triangle) in print.triangles.iter().enumerate() {
-            let Some(region) = regions[t] else { continue };
-            let ends = [0, 1].map(|up| {
-                triangle.map(|point| {
-                    *columns.entry((point, layer + up)).or_insert_with(|| {
-                        prisms.flat.push(print.points[point].extend(layers.planes[layer + up]));
-                        prisms.plane.push(layer + up);
+impl Prisms {
+    /// Extrudes the footprint through the layers.
+    pub(super) fn new(print: &Footprint, layers: &Layers) -> Self {
+        let mut prisms = Self::default();
+        let mut columns: HashMap<(usize, usize), VertexId> = HashMap::new();
+        for layer in 0..layers.planes.len() - 1 {
+            let mut in_layer = Vec::new();
+            for (t, triangle) in print.triangles.iter().enumerate() {
+                let Some(region) = layers.region(layer, print.covers[t]) else { continue };
+                let mut corner = |k: usize| {
+                    let (point, plane) = (triangle[k % 3], layer + k / 3);
+                    *columns.entry((point, plane)).or_insert_with(|| {
+                        prisms.flat.push(print.points[point].extend(layers.planes[plane]));
+                        prisms.plane.push(plane);
                         VertexId::new(prisms.flat.len() - 1)
                     })
-                })
-            });
-            let prism = [ends[0][0], ends[0][1], ends[0][2], ends[1][0], ends[1][1], ends[1][2]];
-            for corners in SPLITS[turns[t]] {
-                prisms.tets.push(Tet { vertices: corners.map(|k| prism[k]), region });
-                prisms.triangle.push(t);
+                };
+                let corners = [0, 1, 2, 3, 4, 5].map(&mut corner);
+                in_layer.push(Prism { triangle: t, region, corners });
+            }
+            prisms.layers.push(in_layer);
+        }
+        prisms
+    }
+
+    /// Splits all prisms, their corners being at `positions`, m.
+    pub(super) fn split(&self, print: &Footprint, positions: &[DVec3]) -> Split {
+        let walls = Walls::new(print);
+        let mut split = Split::default();
+        for in_layer in &self.layers {
+            let mut costs = vec![None; print.triangles.len()];
+            for prism in in_layer {
+                costs[prism.triangle] = Some(turn_costs(prism.corners.map(|v| positions[v.index()])));
+            }
+            let turns = walls.choose(print, &costs);
+            for prism in in_layer {
+                for corners in SPLITS[turns[prism.triangle]] {
+                    split.tets.push(Tet { vertices: corners.map(|k| prism.corners[k]), region: prism.region });
+                    split.triangle.push(prism.triangle);
+                }
             }
         }
+        split
     }
-    prisms
 }
 
-/// Corners 0, 1, 2 of a prism lie below 3, 4, 5. Bit k of a turn: the edge from corner k to corner k + 1 is directed
+/// The tetrahedra of a prism for each turn. Bit k of a turn: the edge from corner k to corner k + 1 is directed
 /// that way. The tetrahedra of each turn, positive; 0 and 7 are cycles and stand empty.
 const SPLITS: [[[usize; 4]; 3]; 8] = {
     let mut splits = [[[0; 4]; 3]; 8];
@@ -117,25 +150,19 @@ impl Walls {
         walls
     }
 
-    /// The turn of each triangle for prisms of some height over the triangles `inside`.
-    fn choose(&self, print: &Footprint, inside: &[bool], height: f64) -> Vec<usize> {
-        let costs: Vec<[f64; 8]> = print
-            .triangles
-            .iter()
-            .zip(inside)
-            .map(|(t, &inside)| if inside { costs(t.map(|v| print.points[v].extend(0.0)), height) } else { [0.0; 8] })
-            .collect();
+    /// The turn of each triangle, given the costs of all turns of those with a prism.
+    fn choose(&self, print: &Footprint, costs: &[Option<[f64; 8]>]) -> Vec<usize> {
         let mut forward = vec![true; self.ends.len()];
         for _ in 0..MAX_SWEEPS {
             let mut changed = false;
-            for t in (0..inside.len()).filter(|&t| inside[t]) {
-                changed |= self.improve(print, &costs, t, &mut forward);
+            for t in (0..costs.len()).filter(|&t| costs[t].is_some()) {
+                changed |= self.improve(print, costs, t, &mut forward);
             }
             if !changed {
                 break;
             }
         }
-        (0..inside.len()).map(|t| self.turn(print, t, &forward)).collect()
+        (0..costs.len()).map(|t| self.turn(print, t, &forward)).collect()
     }
 
     /// The turn of a triangle; `forward` directs an edge from its lower to its higher end.
@@ -150,10 +177,10 @@ impl Walls {
     }
 
     /// Gives a triangle the turn that costs it and its neighbors least; true if that changes it.
-    fn improve(&self, print: &Footprint, costs: &[[f64; 8]], t: usize, forward: &mut [bool]) -> bool {
+    fn improve(&self, print: &Footprint, costs: &[Option<[f64; 8]>], t: usize, forward: &mut [bool]) -> bool {
         let walls = self.of_triangle[t];
         let around = |forward: &[bool]| -> f64 {
-            let cost = |s: usize| costs[s][self.turn(print, s, forward)];
+            let cost = |s: usize| costs[s].map_or(0.0, |turns| turns[self.turn(print, s, forward)]);
             let neighbors = walls.iter().flat_map(|&w| &self.sides[w]).filter(|&&s| s != t);
             cost(t) + neighbors.map(|&s| cost(s)).sum::<f64>()
         };
@@ -174,20 +201,22 @@ impl Walls {
     }
 }
 
-/// Cost of each turn of an upright prism: high for small dihedral angles, infinite for cycles.
-fn costs(base: [DVec3; 3], height: f64) -> [f64; 8] {
-    let top = base.map(|p| p + DVec3::Z * height);
-    let prism = [base[0], base[1], base[2], top[0], top[1], top[2]];
+/// Cost of each turn of a prism: high for small dihedral angles, infinite for cycles.
+fn turn_costs(prism: [DVec3; 6]) -> [f64; 8] {
+    let cost = |tet: &[usize; 4]| {
+        let corners = tet.map(|k| prism[k]);
+        if volume(corners) > 0.0 { smallest_dihedral(corners).powi(-POWER).min(TURNED_OVER) } else { TURNED_OVER }
+    };
     let mut costs = [f64::INFINITY; 8];
     for turn in 1..7 {
-        costs[turn] = SPLITS[turn].iter().map(|tet| smallest_dihedral(tet.map(|k| prism[k])).powi(-POWER)).sum();
+        costs[turn] = SPLITS[turn].iter().map(cost).sum();
     }
     costs
 }
 
 /// Smallest angle between two faces of a tetrahedron, radians.
 pub(super) fn smallest_dihedral(corners: [DVec3; 4]) -> f64 {
-    let normal = crate::tet::FACES.map(|face| {
+    let normal = FACES.map(|face| {
         let [a, b, c] = face.map(|k| corners[k]);
         (b - a).cross(c - a).normalize_or_zero()
     });
