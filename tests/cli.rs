@@ -376,7 +376,8 @@ fn an_interrupt_ends_the_study_with_130_and_no_table() {
     while !bench.path("st").exists() {
         std::thread::sleep(Duration::from_millis(5));
     }
-    let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    // The shell's own kill: a bare system has no program of that name.
+    let killed = Command::new("sh").args(["-c", "kill -INT $0", &child.id().to_string()]).status().unwrap();
     assert!(killed.success(), "the signal was sent");
     assert_eq!(child.wait().unwrap().code(), Some(130), "cancelled");
     assert_eq!(fs::read_dir(bench.path("st")).unwrap().count(), 0, "nothing half-done is left");

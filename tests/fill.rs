@@ -146,6 +146,7 @@ fn neighbors_and_sheet() -> Surface {
     let ball = Shell::ball(6).moved(DMat3::from_diagonal(DVec3::splat(12e-3)), DVec3::ZERO);
     let mut whole = surface(&[(ball, 0, 1), (left, 1, 2), (right, 1, 3)], 4);
     // Weld the wall: coinciding points become one, the doubled facets one between both cubes.
+    #[allow(clippy::cast_possible_truncation, reason = "a few million nanometres")]
     let key = |p: DVec3| p.to_array().map(|x| (x * 1e9).round() as i64);
     let mut first = HashMap::new();
     let number: Vec<usize> =

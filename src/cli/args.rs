@@ -1,6 +1,8 @@
 //! The arguments: what can be typed, and nothing of what it does.
 
+use crate::pipeline::{Density, Shape};
 use crate::project::{BendPlane, CompensationMode, RuleSpec, ScopeSpec};
+use crate::tet::Metal;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -28,6 +30,8 @@ pub enum Command {
     Compensate(CompensateArgs),
     /// Export geometry with certificate
     Export(ExportArgs),
+    /// Mesh the antenna and the air around it with tetrahedra, or any surface complex
+    Mesh(MeshArgs),
     /// Prove an export's certificate anew from its files
     Verify(VerifyArgs),
     /// Compute the surface error over bend radius for many cages, as tables and plots
@@ -64,7 +68,7 @@ pub struct NewArgs {
     pub(super) segments: Vec<usize>,
     /// Another shape, on top of the bend if there is one
     #[arg(long, value_name = "SHAPE")]
-    pub(super) preset: Option<Shape>,
+    pub(super) preset: Option<Section>,
     /// Amplitude of the shape, mm [default: 10, crumple 1]
     #[arg(long, value_name = "MM")]
     pub(super) amplitude: Option<f64>,
@@ -148,6 +152,32 @@ pub struct ExportArgs {
     pub(super) json: bool,
 }
 
+/// Arguments of `mesh`.
+#[derive(Debug, Args)]
+pub struct MeshArgs {
+    /// Project file
+    #[arg(required_unless_present = "surface", conflicts_with = "surface")]
+    pub(super) file: Option<PathBuf>,
+    /// Mesh all regions of this surface complex instead: JSON, as the documentation of `io::surface_json` says
+    #[arg(long, value_name = "JSON")]
+    pub(super) surface: Option<PathBuf>,
+    /// Which of the project's shapes
+    #[arg(long, default_value = "deformed", conflicts_with = "surface")]
+    pub(super) shape: ExportShape,
+    /// How fine
+    #[arg(long, default_value = "default")]
+    pub(super) density: DensityChoice,
+    /// Patch and ground as sheets without thickness, or as bodies of their true thickness
+    #[arg(long, default_value = "sheet", conflicts_with = "surface")]
+    pub(super) metal: MetalChoice,
+    /// Write the mesh into this folder, in every format; made where it is missing
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: Option<PathBuf>,
+    /// Print JSON
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
 /// Arguments of `verify`.
 #[derive(Debug, Args)]
 pub struct VerifyArgs {
@@ -217,7 +247,7 @@ pub(super) enum Rule {
 
 /// A shape other than a bend.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum Shape {
+pub(super) enum Section {
     Convex,
     Concave,
     Saddle,
@@ -254,6 +284,26 @@ pub(super) enum ExportShape {
     Flat,
     /// On the exact cylinder of the project's bend
     Cylinder,
+}
+
+/// How fine a mesh is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum DensityChoice {
+    /// For a first look
+    Coarse,
+    /// For results
+    Default,
+    /// To see what a finer mesh would change
+    Fine,
+}
+
+/// What patch and ground are made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum MetalChoice {
+    /// Sheets without thickness
+    Sheet,
+    /// Bodies of their true thickness
+    Solid,
 }
 
 /// A file format.
@@ -297,6 +347,35 @@ impl From<ScopeChoice> for ScopeSpec {
         match scope {
             ScopeChoice::Whole => Self::Whole,
             ScopeChoice::Patch => Self::Patch,
+        }
+    }
+}
+
+impl From<ExportShape> for Shape {
+    fn from(shape: ExportShape) -> Self {
+        match shape {
+            ExportShape::Deformed => Self::Deformed,
+            ExportShape::Flat => Self::Flat,
+            ExportShape::Cylinder => Self::Cylinder,
+        }
+    }
+}
+
+impl From<DensityChoice> for Density {
+    fn from(density: DensityChoice) -> Self {
+        match density {
+            DensityChoice::Coarse => Self::Coarse,
+            DensityChoice::Default => Self::Default,
+            DensityChoice::Fine => Self::Fine,
+        }
+    }
+}
+
+impl From<MetalChoice> for Metal {
+    fn from(metal: MetalChoice) -> Self {
+        match metal {
+            MetalChoice::Sheet => Self::Sheet,
+            MetalChoice::Solid => Self::Solid,
         }
     }
 }

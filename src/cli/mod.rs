@@ -13,6 +13,7 @@ mod deform;
 mod example;
 mod export;
 mod info;
+mod mesh;
 mod new;
 mod plot;
 mod progress;
@@ -90,6 +91,7 @@ fn dispatch(command: Command, task: &Task) -> Result<ExitCode> {
         Command::Deform(args) => deform::deform(&args, task)?,
         Command::Compensate(args) => deform::compensate(&args, task)?,
         Command::Export(args) => export::export(&args, task)?,
+        Command::Mesh(args) => mesh::run(&args, task)?,
         Command::Verify(args) => return Ok(if export::verify(&args)? { ExitCode::SUCCESS } else { FAULTS.into() }),
         Command::Study(args) => study::run(&args, task)?,
         Command::Info(args) => info::run(&args)?,

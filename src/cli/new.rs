@@ -1,6 +1,6 @@
 //! `new`: from flags to a project file.
 
-use super::args::{NewArgs, Shape};
+use super::args::{NewArgs, Section};
 use crate::antenna::{Dielectric, first_guess};
 use crate::pipeline::Scene;
 use crate::project::{BendPlane, Edit, PresetEntry, PresetSpec, Project, file};
@@ -93,14 +93,14 @@ fn presets(args: &NewArgs) -> Result<Vec<PresetEntry>> {
     if let Some(shape) = args.preset {
         // A radius given for a bend is the bend's.
         let radius_mm = args.radius.filter(|_| args.bend.is_none()).unwrap_or(SECTION_RADIUS_MM);
-        let amplitude_mm = args.amplitude.unwrap_or(if shape == Shape::Crumple { 1.0 } else { 10.0 });
+        let amplitude_mm = args.amplitude.unwrap_or(if shape == Section::Crumple { 1.0 } else { 10.0 });
         let &[along_x, along_y] = &args.waves[..] else { bail!("--waves takes two numbers, x,y") };
         presets.push(match shape {
-            Shape::Convex => PresetSpec::Convex { radius_mm, amplitude_mm },
-            Shape::Concave => PresetSpec::Concave { radius_mm, amplitude_mm },
-            Shape::Saddle => PresetSpec::Saddle { radius_mm, amplitude_mm },
-            Shape::Twist => PresetSpec::Twist { amplitude_mm, rate_deg_per_mm: args.rate },
-            Shape::Crumple => PresetSpec::Crumple { amplitude_mm, waves: [along_x, along_y], phase_deg: 0.0 },
+            Section::Convex => PresetSpec::Convex { radius_mm, amplitude_mm },
+            Section::Concave => PresetSpec::Concave { radius_mm, amplitude_mm },
+            Section::Saddle => PresetSpec::Saddle { radius_mm, amplitude_mm },
+            Section::Twist => PresetSpec::Twist { amplitude_mm, rate_deg_per_mm: args.rate },
+            Section::Crumple => PresetSpec::Crumple { amplitude_mm, waves: [along_x, along_y], phase_deg: 0.0 },
         });
     }
     ensure!(

@@ -97,7 +97,7 @@ impl<'a> Optimiser<'a> {
                 break;
             }
             budget -= 1;
-            if budget % 4096 == 0 {
+            if budget.is_multiple_of(4096) {
                 task.check()?;
             }
             if !self.mesh.store.is_alive(t) || !self.counts(t) || self.mesh.ratio(t) >= below {
@@ -125,7 +125,7 @@ impl<'a> Optimiser<'a> {
         chosen.dedup();
         let mut star = Vec::new();
         for (k, v) in chosen.into_iter().enumerate() {
-            if k % 4096 == 0 {
+            if k.is_multiple_of(4096) {
                 task.check()?;
             }
             self.mesh.store.star(v, &mut star);

@@ -90,14 +90,6 @@ impl<'a> Recovery<'a> {
             if round == 0 {
                 (self.report.n_missing_edges, self.report.n_missing_facets) = (n_edges, n_facets);
             }
-            eprintln!(
-                "round {round}: edges {n_edges} left {} facets {n_facets} left {} budget {} helpers {} splits {}",
-                missing_edges.len(),
-                missing_facets.len(),
-                self.budget,
-                self.report.n_helpers,
-                self.report.splits.len()
-            );
             if n_edges == 0 && n_facets == 0 {
                 return Ok(());
             }
@@ -124,7 +116,7 @@ impl<'a> Recovery<'a> {
         edges.sort_unstable();
         let (mut n_missing, mut left) = (0, Vec::new());
         for (k, edge) in edges.into_iter().enumerate() {
-            if k % 1024 == 0 {
+            if k.is_multiple_of(1024) {
                 task.check()?;
             }
             if self.tet_with(&edge).is_none() {
@@ -141,7 +133,7 @@ impl<'a> Recovery<'a> {
     fn recover_facets(&mut self, task: &Task) -> Result<(usize, Vec<usize>), TetError> {
         let (mut n_missing, mut left) = (0, Vec::new());
         for f in 0..self.facets.len() {
-            if f % 1024 == 0 {
+            if f.is_multiple_of(1024) {
                 task.check()?;
             }
             if self.tet_with(&self.facets[f].vertices.clone()).is_none() {

@@ -32,7 +32,7 @@ pub(super) fn seeds(surface: &Surface, sizing: &Sizing, task: &Task) -> Result<V
     let mut seen: HashSet<[i64; 3]> = HashSet::new();
     let mut lattice: Vec<([i64; 3], DVec3)> = Vec::new();
     while let Some((middle, size)) = open.pop() {
-        if lattice.len() % 1024 == 0 {
+        if lattice.len().is_multiple_of(1024) {
             task.check()?;
         }
         let corners =

@@ -48,7 +48,7 @@ pub(super) struct Ring {
 struct Side {
     key: FaceKey,
     tet: TetId,
-    face: u8,
+    face: usize,
     /// Some for the tetrahedron beyond the polyhedron: whether the face is a wall.
     outer: Option<bool>,
 }
@@ -203,7 +203,7 @@ impl Store {
                         outer: Some(self.is_wall(t, i)),
                     });
                 } else if !self.is_marked(beyond) {
-                    let face = self.face_beyond(t, i) as u8;
+                    let face = self.face_beyond(t, i);
                     sides.push(Side {
                         key: face_key(self.corners(t), i),
                         tet: beyond,
@@ -223,7 +223,7 @@ impl Store {
             let t = self.allocate(corners, region);
             made.push(t);
             for (i, v) in corners.into_iter().enumerate() {
-                sides.push(Side { key: face_key(corners, i), tet: t, face: i as u8, outer: None });
+                sides.push(Side { key: face_key(corners, i), tet: t, face: i, outer: None });
                 self.at_vertex[v.index()] = t;
             }
         }
@@ -238,7 +238,7 @@ impl Store {
     fn join(&mut self, p: Side, q: Side) {
         for (from, to) in [(p, q), (q, p)] {
             if from.tet != TetId::NONE {
-                self.neighbors[from.tet.index()][usize::from(from.face)] = to.tet;
+                self.neighbors[from.tet.index()][from.face] = to.tet;
                 if from.outer.is_none() && to.outer == Some(true) {
                     self.walls[from.tet.index()] |= 1 << from.face;
                 }
