@@ -40,7 +40,7 @@ pub(super) struct Footprint {
 /// Triangulates the outlines of valid parameters.
 pub(super) fn triangulate(params: &PatchParams, settings: &BlockSettings) -> Result<Footprint, BlockError> {
     let sizing = Sizing::new(params, settings)?;
-    let outlines = Outlines::new(params, &sizing);
+    let outlines = Outlines::new(params, &sizing)?;
     let mut points = outlines.points.clone();
     points.extend(seeds::pack(&outlines, &sizing, settings.inner));
     let mut print = Draft { points, n_fixed: outlines.points.len(), outlines: &outlines, sizing: &sizing };

@@ -1,6 +1,6 @@
 //! Which faces of the block carry a boundary condition.
 
-use super::footprint::Footprint;
+use super::footprint::{Cover, Footprint};
 use super::layers::Layers;
 use super::prisms::Split;
 use super::{COAX_ID, GROUND_ID, PATCH_ID, PIN_ID};
@@ -70,7 +70,7 @@ pub(super) fn mark(split: &Split, planes: &[usize], print: &Footprint, layers: &
 }
 
 /// The group of a face in the plane of a sheet. Sheets lie on the block's skin, so their faces come up once.
-fn sheet(layers: &Layers, plane: Option<usize>, cover: super::footprint::Cover) -> Option<usize> {
+fn sheet(layers: &Layers, plane: Option<usize>, cover: Cover) -> Option<usize> {
     if !layers.has_sheets() {
         return None;
     }

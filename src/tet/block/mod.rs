@@ -56,7 +56,7 @@ pub enum Metal {
 pub struct BlockSettings {
     /// Edge length at the patch's rim, m; it rules the accuracy of the field.
     pub rim: f64,
-    /// Greatest edge length away from it, m.
+    /// Edge length far from it, m: a tenth above the mean, and three quarters of the longest.
     pub inner: f64,
     /// Layers of the substrate, at least one.
     pub layers: usize,

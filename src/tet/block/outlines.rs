@@ -1,13 +1,17 @@
 //! The outlines of all parts, cut where they cross and divided to the wanted edge lengths.
 //!
 //! Ground, patch, pin and outer conductor bound the triangles of the footprint. The outer conductor's circle may reach
-//! past the patch's edges; its polygon then has corners exactly at the crossings and even segments between them, so
-//! that no short edge arises there. An arc of about one segment beyond an edge becomes a chord along that edge.
+//! past the patch's edges; its polygon then has corners exactly at the crossings and segments of the wanted
+//! length between them, so that no short edge arises there. An arc of about one segment beyond an edge becomes a chord
+//! along that edge.
+//!
+//! Not handled: a circle through a corner of the patch, to about the height of a segment's arc.
 
+use super::BlockError;
 use super::sizing::{Circle, Sizing};
 use crate::antenna::PatchParams;
 use crate::geometry::DVec2;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 /// Longest arc beyond a side of the patch, in segments, that becomes a chord along it.
 const CHORD: f64 = 1.5;
@@ -41,17 +45,17 @@ struct Crossing {
 
 impl Outlines {
     /// Draws the outlines of valid parameters.
-    pub(super) fn new(params: &PatchParams, sizing: &Sizing) -> Self {
+    pub(super) fn new(params: &PatchParams, sizing: &Sizing) -> Result<Self, BlockError> {
         let patch = DVec2::new(params.width, params.length) / 2.0;
         let ground = DVec2::new(params.ground_width, params.ground_length) / 2.0;
         let mut outlines = Self { patch, ground, ..Self::default() };
         let mut cuts: Vec<(usize, usize)> = Vec::new();
         for circle in &sizing.circles {
-            outlines.add_circle(circle, sizing, &mut cuts);
+            outlines.add_circle(circle, sizing, &mut cuts)?;
         }
         outlines.add_rectangle(patch, sizing, &cuts);
         outlines.add_rectangle(ground, sizing, &[]);
-        outlines
+        Ok(outlines)
     }
 
     fn point(&mut self, p: DVec2) -> usize {
@@ -60,8 +64,17 @@ impl Outlines {
     }
 
     /// Adds a circle's polygon; its crossings with the patch's sides go to `cuts`, as side and point.
-    fn add_circle(&mut self, circle: &Circle, sizing: &Sizing, cuts: &mut Vec<(usize, usize)>) {
+    fn add_circle(
+        &mut self,
+        circle: &Circle,
+        sizing: &Sizing,
+        cuts: &mut Vec<(usize, usize)>,
+    ) -> Result<(), BlockError> {
         let crossings = crossings(circle, self.patch);
+        if crossings.len() % 2 == 1 {
+            // Through a corner: a closed curve crosses another an even number of times.
+            return Err(BlockError::Outlines);
+        }
         let on_circle = |angle: f64| circle.center + circle.radius * DVec2::new(angle.sin(), -angle.cos());
         let step = TAU / circle.segments as f64;
         let corners: Vec<(f64, usize)> = if crossings.is_empty() {
@@ -85,6 +98,7 @@ impl Outlines {
             }
         }
         self.polygons.push(polygon);
+        Ok(())
     }
 
     /// Adds an axis-parallel rectangle about the origin, through the `cuts`.
@@ -155,7 +169,7 @@ fn crossings(circle: &Circle, half: DVec2) -> Vec<Crossing> {
             point[other] = circle.center[other] + sign * reach.sqrt();
             if point[other].abs() < half[other] {
                 let arm = point - circle.center;
-                found.push(Crossing { angle: arm.x.atan2(-arm.y).rem_euclid(2.0 * PI), side, point });
+                found.push(Crossing { angle: arm.x.atan2(-arm.y).rem_euclid(TAU), side, point });
             }
         }
     }

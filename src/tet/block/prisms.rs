@@ -95,8 +95,8 @@ impl Prisms {
     }
 }
 
-/// The tetrahedra of a prism for each turn. Bit k of a turn: the edge from corner k to corner k + 1 is directed
-/// that way. The tetrahedra of each turn, positive; 0 and 7 are cycles and stand empty.
+/// The positive tetrahedra of a prism for each turn. Bit k of a turn: the edge from corner k to corner k + 1 is directed
+/// that way; 0 and 7 are cycles and stand empty.
 const SPLITS: [[[usize; 4]; 3]; 8] = {
     let mut splits = [[[0; 4]; 3]; 8];
     let mut turn = 1;

@@ -14,7 +14,8 @@ const SLOPE: f64 = 0.22;
 /// Width of the strip on both sides of the rim in which lengths do not grow yet, in rim lengths: the field's
 /// singularity at the edge wants two even rows of triangles.
 const STRIP: f64 = 0.75;
-/// Lengths aimed at inside, relative to the greatest wanted: the packing leaves edges up to an eighth longer.
+/// Length aimed at far from the rim, relative to the one asked for: the packing leaves single edges much longer, which
+/// with the layers' height rule the flattest tetrahedra there.
 const AIM: f64 = 0.83;
 /// Greatest edge of the sheath within a solid ground, in thicknesses of it: longer ones make its tetrahedra, the
 /// flattest of all that carry a field, flatter still.
@@ -24,7 +25,7 @@ const SHEATH_LEAST: f64 = 0.6;
 /// Fewest segments of the pin's and the outer conductor's polygon: with fewer their triangles have angles that no
 /// placing of inner points mends.
 const MIN_SEGMENTS: [usize; 2] = [10, 20];
-/// Greatest number of points expected of a footprint; a million of tetrahedra in four layers.
+/// Greatest number of points expected of a footprint; about a million tetrahedra in four layers.
 const MAX_POINTS: f64 = 50_000.0;
 
 /// A circle of the feed.

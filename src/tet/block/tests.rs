@@ -75,7 +75,7 @@ fn footprint_angle(params: &PatchParams, settings: &BlockSettings) -> f64 {
 
 #[test]
 fn blocks_are_valid_and_their_skin_is_a_sphere() {
-    for kind in KINDS {
+    for kind in KINDS.into_iter().chain([(Metal::Solid, false)]) {
         for params in [paper(), deep_feed()] {
             let block = flat(&params, &settings(kind));
             assert_eq!(block.check(), Ok(()), "{kind:?}");
@@ -200,6 +200,34 @@ fn footprints_of_clear_outlines_have_no_small_angle() {
         let smallest = footprint_angle(&params, &settings);
         assert!(smallest >= 28.0, "inset {inset}, offset {offset}, rim {rim} mm: {smallest:.1} degrees");
     }
+}
+
+#[test]
+fn a_circle_that_barely_passes_the_rim_ends_in_a_chord_along_it() {
+    let params = PatchParams { coax_radius: from_mm(1.77), ..paper() };
+    let settings = settings(KINDS[0]);
+    let block = flat(&params, &settings);
+    assert_eq!(block.check(), Ok(()), "valid");
+    let below = |p: &&DVec3| p.z <= params.port_plane() && p.y < -params.length / 2.0;
+    assert_eq!(block.flat.iter().filter(below).count(), 0, "the line ends at the rim");
+    let smallest = footprint_angle(&params, &settings);
+    assert!(smallest >= 12.0, "the outlines leave about 15 degrees: {smallest:.1}");
+}
+
+#[test]
+fn edges_are_as_long_as_asked_for() {
+    let settings = settings(KINDS[0]);
+    let print = footprint::triangulate(&paper(), &settings).expect("a footprint");
+    let mean = |within: &dyn Fn(DVec2) -> bool| {
+        let edges = print.triangles.iter().flat_map(|t| [0, 1, 2].map(|k| [t[k], t[(k + 1) % 3]]));
+        let ends = edges.map(|edge| edge.map(|v| print.points[v])).filter(|ends| ends.iter().all(|&p| within(p)));
+        let lengths: Vec<f64> = ends.map(|[a, b]| a.distance(b)).collect();
+        lengths.iter().sum::<f64>() / lengths.len() as f64
+    };
+    let far = mean(&|p| p.y > from_mm(6.0)) / settings.inner;
+    assert!((0.85..1.0).contains(&far), "far from the rim {far:.3} of what was asked for");
+    let rim = mean(&|p| (p.y - paper().length / 2.0).abs() < 1e-9 && p.x.abs() < paper().width / 2.0) / settings.rim;
+    assert!((0.95..1.05).contains(&rim), "along the rim {rim:.3} of what was asked for");
 }
 
 #[test]
