@@ -59,13 +59,22 @@ pub(super) fn seeds(surface: &Surface, sizing: &Sizing, task: &Task) -> Result<V
     Ok(lattice.par_iter().filter_map(keep).collect())
 }
 
-/// Up to half a unit along each axis, by a hash of the lattice place.
+/// Up to half a unit along each axis, by a hash of the lattice place \[VIG14\].
 fn jitter(name: [i64; 3]) -> DVec3 {
-    let part = |k: usize| {
-        let [a, b, c] = [0, 1, 2].map(|i| name[(k + i) % 3].wrapping_mul([2_654_435_761, 40_503, 9_176][i]));
-        ((a ^ b ^ c) & 1023) as f64 / 1023.0 - 0.5
+    let mut state = name.iter().fold(0_u64, |state, &x| mix(state ^ x.cast_unsigned()));
+    let mut part = || {
+        state = mix(state);
+        (state >> 40) as f64 / f64::from(1_u32 << 24) - 0.5
     };
-    DVec3::new(part(0), part(1), part(2))
+    DVec3::new(part(), part(), part())
+}
+
+/// Spreads every bit of the input over the output.
+fn mix(x: u64) -> u64 {
+    let x = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let x = (x ^ x >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let x = (x ^ x >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+    x ^ x >> 31
 }
 
 /// Tells, to rounding, whether a point is in a region that is to be filled: the first facet on a ray says so. A point
