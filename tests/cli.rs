@@ -395,3 +395,32 @@ fn a_reader_that_leaves_early_is_no_failure() {
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
 }
+
+#[test]
+fn mesh_reports_its_quality_and_writes_every_format() {
+    let bench = Bench::new();
+    bench.ok("new a.json --bend h --radius 10 --segments 10");
+    let report = bench.json("mesh a.json --density coarse --out m --json");
+    assert!(report["tets"].as_u64().unwrap() > 20_000, "{report}");
+    assert!(report["whole"]["dihedral_min_deg"].as_f64().unwrap() > 8.0, "{report}");
+    assert!(report["map_distance_mm"].as_f64().unwrap() < 0.05, "{report}");
+    let names: Vec<_> = report["regions"].as_array().unwrap().iter().map(|r| r["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["air", "substrate", "coax"], "regions with cells");
+    for file in ["mesh.msh", "mesh22.msh", "mesh.vtu", "mesh.nas"] {
+        assert!(bench.path("m").join(file).metadata().unwrap().len() > 1_000_000, "{file}");
+    }
+    let text = bench.ok("mesh a.json --density coarse --shape flat");
+    assert!(text.contains("tetrahedra") && text.contains("smallest cells"), "{text}");
+}
+
+#[test]
+fn mesh_fills_a_surface_complex_and_refuses_what_is_none() {
+    let bench = Bench::new();
+    let golden = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/mesh/R6.5_C.json.gz");
+    let report = bench.json(&format!("mesh --surface {} --density coarse --json", golden.display()));
+    assert!(report["map_distance_mm"].is_null() && report["tets"].as_u64().unwrap() > 50_000, "{report}");
+    fs::write(bench.path("b.json"), "{\"V\": []}").unwrap();
+    bench.fails("mesh --surface b.json", 1, "b.json");
+    bench.fails("mesh a.json --surface b.json", 2, "cannot be used with");
+    bench.fails("mesh", 2, "required");
+}

@@ -59,7 +59,7 @@ pub(super) fn seeds(surface: &Surface, sizing: &Sizing, task: &Task) -> Result<V
     Ok(lattice.par_iter().filter_map(keep).collect())
 }
 
-/// Up to half a unit along each axis, by a hash of the lattice place \[VIG14\].
+/// Up to half a unit along each axis, by a hash of the lattice place \[SLF14\].
 fn jitter(name: [i64; 3]) -> DVec3 {
     let mut state = name.iter().fold(0_u64, |state, &x| mix(state ^ x.cast_unsigned()));
     let mut part = || {

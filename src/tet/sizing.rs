@@ -5,6 +5,7 @@
 
 use super::surface::Surface;
 use crate::geometry::DVec3;
+use crate::geometry::bvh::Aabb;
 
 /// Limits of the edge length.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,8 +21,9 @@ pub struct SizingSettings {
 struct Site {
     place: DVec3,
     size: f64,
-    /// Smallest size in the site's part of the tree.
+    /// Smallest size in the site's part of the tree, and the box around that part.
     smallest: f64,
+    bounds: Aabb,
 }
 
 /// The sizing field.
@@ -61,7 +63,12 @@ impl Sizing {
             .iter()
             .zip(sums)
             .filter(|(_, (_, n))| *n > 0)
-            .map(|(&place, (sum, n))| Site { place, size: sum / f64::from(n), smallest: 0.0 })
+            .map(|(&place, (sum, n))| Site {
+                place,
+                size: sum / f64::from(n),
+                smallest: 0.0,
+                bounds: Aabb::around(&[place]),
+            })
             .collect();
         sort(&mut sites, 0);
         Self { settings, sites }
@@ -84,25 +91,24 @@ impl Sizing {
     fn search(&self, sites: &[Site], axis: usize, p: DVec3, best: &mut Wanted) {
         let middle = sites.len() / 2;
         let Some(site) = sites.get(middle) else { return };
+        let away = (site.bounds.lo - p).max(p - site.bounds.hi).max(DVec3::ZERO).length();
+        if away >= best.distance && site.smallest + self.settings.grading * away >= best.size {
+            return;
+        }
         let distance = site.place.distance(p);
         best.distance = best.distance.min(distance);
         best.size = best.size.min(site.size + self.settings.grading * distance);
-        let offset = p[axis] - site.place[axis];
         let (left, right) = (&sites[..middle], &sites[middle + 1..]);
-        let (near, far) = if offset < 0.0 { (left, right) } else { (right, left) };
-        for (part, away) in [(near, 0.0), (far, offset.abs())] {
-            let smallest = part.get(part.len() / 2).map_or(f64::INFINITY, |s| s.smallest);
-            if away < best.distance || smallest + self.settings.grading * away < best.size {
-                self.search(part, (axis + 1) % 3, p, best);
-            }
-        }
+        let (near, far) = if p[axis] < site.place[axis] { (left, right) } else { (right, left) };
+        self.search(near, (axis + 1) % 3, p, best);
+        self.search(far, (axis + 1) % 3, p, best);
     }
 }
 
-/// Makes the tree; returns the smallest size in it.
-fn sort(sites: &mut [Site], axis: usize) -> f64 {
+/// Makes the tree.
+fn sort(sites: &mut [Site], axis: usize) {
     if sites.is_empty() {
-        return f64::INFINITY;
+        return;
     }
     let middle = sites.len() / 2;
     let key = |s: &Site| (s.place[axis], s.place.x, s.place.y, s.place.z);
@@ -111,7 +117,13 @@ fn sort(sites: &mut [Site], axis: usize) -> f64 {
         p.0.total_cmp(&q.0).then(p.1.total_cmp(&q.1)).then(p.2.total_cmp(&q.2)).then(p.3.total_cmp(&q.3))
     });
     let (left, right) = sites.split_at_mut(middle);
-    let below = sort(left, (axis + 1) % 3).min(sort(&mut right[1..], (axis + 1) % 3));
-    sites[middle].smallest = below.min(sites[middle].size);
-    sites[middle].smallest
+    sort(left, (axis + 1) % 3);
+    sort(&mut right[1..], (axis + 1) % 3);
+    let parts = [left.get(left.len() / 2).copied(), right[1..].get((right.len() - 1) / 2).copied()];
+    let whole = &mut right[0];
+    whole.smallest = whole.size;
+    for part in parts.into_iter().flatten() {
+        whole.smallest = whole.smallest.min(part.smallest);
+        whole.bounds = Aabb { lo: whole.bounds.lo.min(part.bounds.lo), hi: whole.bounds.hi.max(part.bounds.hi) };
+    }
 }
