@@ -28,6 +28,8 @@ pub mod distortion;
 
 pub mod tet;
 
+pub mod tlm;
+
 pub mod io;
 pub mod project;
 #[cfg(feature = "gui")]

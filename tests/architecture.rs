@@ -14,6 +14,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("deform", &["geometry", "task", "units"]),
     ("distortion", &["antenna", "cage", "deform", "geometry", "task", "units"]),
     ("tet", &["antenna", "geometry", "task", "units"]),
+    ("tlm", &["geometry", "task", "tet", "units"]),
     ("io", &["geometry", "tet", "units"]),
     ("project", &["antenna", "cage", "geometry", "io", "units"]),
     ("render", &["geometry", "units"]),
