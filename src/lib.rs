@@ -30,6 +30,8 @@ pub mod tet;
 
 pub mod tlm;
 
+pub mod results;
+
 pub mod io;
 pub mod project;
 #[cfg(feature = "gui")]

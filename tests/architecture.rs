@@ -15,10 +15,14 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("distortion", &["antenna", "cage", "deform", "geometry", "task", "units"]),
     ("tet", &["antenna", "geometry", "task", "units"]),
     ("tlm", &["geometry", "task", "tet", "units"]),
-    ("io", &["geometry", "tet", "units"]),
+    ("results", &["task", "tlm", "units"]),
+    ("io", &["geometry", "results", "tet", "units"]),
     ("project", &["antenna", "cage", "geometry", "io", "units"]),
     ("render", &["geometry", "units"]),
-    ("pipeline", &["antenna", "cage", "deform", "distortion", "geometry", "project", "task", "tet", "units"]),
+    (
+        "pipeline",
+        &["antenna", "cage", "deform", "distortion", "geometry", "project", "results", "task", "tet", "tlm", "units"],
+    ),
     (
         "cli",
         &[
@@ -31,6 +35,7 @@ const LAYERS: &[(&str, &[&str])] = &[
             "pipeline",
             "project",
             "render",
+            "results",
             "task",
             "tet",
             "units",
@@ -48,6 +53,7 @@ const LAYERS: &[(&str, &[&str])] = &[
             "pipeline",
             "project",
             "render",
+            "results",
             "task",
             "tet",
             "units",

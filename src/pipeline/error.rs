@@ -6,6 +6,7 @@ use crate::deform::DeformError;
 use crate::distortion::CompensationError;
 use crate::task::Cancelled;
 use crate::tet::{BlockError, EncloseError, TetError};
+use crate::tlm::TlmError;
 
 /// Why a project could not be computed; the message says what to change.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -82,6 +83,9 @@ pub enum PipelineError {
     /// The antenna or the air around it cannot be meshed.
     #[error("mesh: {0}")]
     Mesh(EncloseError),
+    /// The field cannot be solved.
+    #[error("solver: {0}")]
+    Solver(TlmError),
     /// A cylinder was asked for where there is none.
     #[error("there is no exact cylinder: only a single bend without hand edits has one")]
     NoCylinder,
@@ -95,6 +99,15 @@ impl From<EncloseError> for PipelineError {
         match error {
             EncloseError::Air(TetError::Cancelled(cancelled)) => Self::Cancelled(cancelled),
             other => Self::Mesh(other),
+        }
+    }
+}
+
+impl From<TlmError> for PipelineError {
+    fn from(error: TlmError) -> Self {
+        match error {
+            TlmError::Cancelled(cancelled) => Self::Cancelled(cancelled),
+            other => Self::Solver(other),
         }
     }
 }

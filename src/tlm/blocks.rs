@@ -45,17 +45,20 @@ pub(super) struct Boundary {
     pub(super) terms: [Lane; 33],
 }
 
-/// Where the parts of a [`State`] begin: T (6), p (6), z (3).
-pub(super) const REFLECTED: usize = 6;
-const FLUX: usize = 12;
+/// Where z begins in a [`State`]: T (6), z (3).
+const FLUX: usize = 6;
 
-/// The field of a block's cells.
-pub(super) type State = [Lane; 15];
+/// The field of a block's cells, but for the reflected currents.
+pub(super) type State = [Lane; 9];
+
+/// Reflected port currents p of a block's cells: apart from the rest, since connecting reads nothing else.
+pub(super) type Reflected = [Lane; 6];
 
 /// One step of some neighboring blocks.
 pub(super) struct Scatter<'a> {
     pub(super) blocks: &'a [Block],
     pub(super) states: &'a mut [State],
+    pub(super) reflected: &'a mut [Reflected],
     /// Edge voltages, one more than there are edges: the last is zero.
     pub(super) voltages: &'a [f32],
     /// For blocks with boundary faces: their terms, and the driving signal.
@@ -69,9 +72,10 @@ impl WithSimd for Scatter<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _simd: S) -> f64 {
         let mut observed = 0.0;
-        for (b, (block, state)) in self.blocks.iter().zip(self.states).enumerate() {
+        let fields = self.states.iter_mut().zip(self.reflected);
+        for (b, (block, (state, reflected))) in self.blocks.iter().zip(fields).enumerate() {
             let boundary = self.boundary.map(|(terms, signal)| (&terms[b], signal));
-            observed += scatter(block, state, self.voltages, boundary);
+            observed += scatter(block, state, reflected, self.voltages, boundary);
         }
         observed
     }
@@ -115,15 +119,26 @@ fn transposed_circulation(h: &[Lane; 3]) -> [Lane; 6] {
 }
 
 #[inline(always)]
-fn scatter(block: &Block, state: &mut State, voltages: &[f32], boundary: Option<(&Boundary, f32)>) -> f64 {
+fn scatter(
+    block: &Block,
+    state: &mut State,
+    reflected: &mut Reflected,
+    voltages: &[f32],
+    boundary: Option<(&Boundary, f32)>,
+) -> f64 {
     let c = &block.coefficients;
     let mut current = [[0.0; LANES]; 6];
     let mut drive = [[0.0; LANES]; 6];
     for e in 0..6 {
         let y = &c[ADMITTANCE + e];
+        // Gathered by itself, so that the rest runs on whole lanes.
+        let mut across = [0.0; LANES];
         for w in 0..LANES {
-            let incident = y[w] * voltages[block.edges[e][w] as usize] - 2.0 * state[REFLECTED + e][w];
-            current[e][w] = state[REFLECTED + e][w] + incident;
+            across[w] = voltages[block.edges[e][w] as usize];
+        }
+        for w in 0..LANES {
+            let incident = y[w] * across[w] - 2.0 * reflected[e][w];
+            current[e][w] = reflected[e][w] + incident;
             state[e][w] += incident;
             drive[e][w] = 2.0 * state[e][w];
         }
@@ -152,7 +167,7 @@ fn scatter(block: &Block, state: &mut State, voltages: &[f32], boundary: Option<
     for e in 0..6 {
         let (y, loss) = (&c[ADMITTANCE + e], &c[LOSS]);
         for w in 0..LANES {
-            state[REFLECTED + e][w] = y[w] * v[e][w] - current[e][w];
+            reflected[e][w] = y[w] * v[e][w] - current[e][w];
             // Dropped ports have no admittance, and nothing must gather there.
             let kept = if y[w] > 0.0 { 1.0 } else { 0.0 };
             state[e][w] = kept * (state[e][w] + q[e][w] - loss[w] * (drive[e][w] + q[e][w]));

@@ -1,7 +1,9 @@
 //! From a mesh to the coefficients of all cells: fixed once built.
 
 use super::TlmError;
-use super::blocks::{A_INVERSE, ADMITTANCE, Block, Boundary, LANES, LOSS, OBSERVATION, REFLECTED, SOURCE, triangle};
+use super::blocks::{
+    A_INVERSE, ADMITTANCE, Block, Boundary, LANES, LOSS, OBSERVATION, Reflected, SOURCE, State, triangle,
+};
 use super::cell::{Cell, EDGES, MARGIN, face_mass};
 use super::port::PortMode;
 use crate::geometry::{DVec3, VertexId};
@@ -39,7 +41,7 @@ pub struct Network {
     /// Terms of the last blocks, which hold all cells with boundary faces.
     pub(super) boundary: Vec<Boundary>,
     pub(super) n_edges: usize,
-    /// For each edge where its ports' reflected currents are in the state, from `starts[e]` to `starts[e + 1]`.
+    /// For each edge where its ports' reflected currents are among those of all blocks, from `starts[e]` to `starts[e + 1]`.
     pub(super) starts: Vec<u32>,
     pub(super) places: Vec<u32>,
     /// `2 / sum Y` of each edge.
@@ -219,7 +221,7 @@ impl Network {
     /// Memory of coefficients and state, bytes.
     #[must_use]
     pub fn memory(&self) -> usize {
-        self.blocks.len() * (size_of::<Block>() + size_of::<super::blocks::State>())
+        self.blocks.len() * (size_of::<Block>() + size_of::<State>() + size_of::<Reflected>())
             + self.boundary.len() * size_of::<Boundary>()
             + 4 * (self.starts.len() + self.places.len() + 2 * self.weights.len())
     }
@@ -312,7 +314,7 @@ impl Slots {
         for (lane, ports) in self.edges.iter().enumerate() {
             let (b, w) = (lane / LANES, lane % LANES);
             for (e, &edge) in ports.iter().enumerate().filter(|(_, edge)| live(**edge)) {
-                let place = (b * 15 + REFLECTED + e) * LANES + w;
+                let place = (b * 6 + e) * LANES + w;
                 places[next[edge as usize] as usize] = VertexId::new(place).raw();
                 next[edge as usize] += 1;
                 sums[edge as usize] += f64::from(blocks[b].coefficients[ADMITTANCE + e][w]);

@@ -1,6 +1,6 @@
 //! The field in time: scatter, connect, drive and read the port.
 
-use super::blocks::{Block, Boundary, LANES, Scatter, State};
+use super::blocks::{LANES, Reflected, Scatter, State};
 use super::{Network, Pulse, TlmError};
 use crate::task::Task;
 use rayon::prelude::*;
@@ -49,6 +49,7 @@ pub struct Run<'a> {
     network: &'a Network,
     pulse: Pulse,
     states: Vec<State>,
+    reflected: Vec<Reflected>,
     /// Edge voltages; one more than there are edges, always zero.
     voltages: Vec<f32>,
     record: Record,
@@ -62,7 +63,8 @@ impl<'a> Run<'a> {
         Self {
             network,
             pulse,
-            states: vec![[[0.0; LANES]; 15]; network.blocks.len()],
+            states: vec![[[0.0; LANES]; 9]; network.blocks.len()],
+            reflected: vec![[[0.0; LANES]; 6]; network.blocks.len()],
             voltages: vec![0.0; network.n_edges + 1],
             record: Record { dt: network.dt, ..Record::default() },
             seconds: 0.0,
@@ -100,42 +102,51 @@ impl<'a> Run<'a> {
     fn step(&mut self) {
         let incident = self.pulse.at(self.record.total.len() as f64 * self.network.dt);
         #[allow(clippy::cast_possible_truncation, reason = "the field runs in single precision")]
-        let observed = scatter(self.network, &mut self.states, &self.voltages, incident as f32);
-        connect(self.network, &self.states, &mut self.voltages);
+        let observed = self.scatter(incident as f32);
+        self.connect();
         self.record.incident.push(incident);
         self.record.total.push(observed);
     }
-}
 
-fn scatter(network: &Network, states: &mut [State], voltages: &[f32], signal: f32) -> f64 {
-    let arch = pulp::Arch::new();
-    let n_inner = network.blocks.len() - network.boundary.len();
-    let (inner, rest) = states.split_at_mut(n_inner);
-    let inside = || {
-        inner.par_chunks_mut(CHUNK).zip(network.blocks.par_chunks(CHUNK)).for_each(|(states, blocks)| {
-            arch.dispatch(Scatter { blocks, states, voltages, boundary: None });
-        });
-    };
-    let terms: (&[Block], &[Boundary]) = (&network.blocks[n_inner..], &network.boundary);
-    let outside = || -> Vec<f64> {
-        let chunks = rest.par_chunks_mut(CHUNK).zip(terms.0.par_chunks(CHUNK).zip(terms.1.par_chunks(CHUNK)));
-        let seen = chunks.map(|(states, (blocks, boundary))| {
-            arch.dispatch(Scatter { blocks, states, voltages, boundary: Some((boundary, signal)) })
-        });
-        seen.collect()
-    };
-    // Summed in the order of the blocks, whichever thread was first.
-    rayon::join(inside, outside).1.iter().sum()
-}
+    /// All cells; returns the total voltage at the port.
+    fn scatter(&mut self, signal: f32) -> f64 {
+        let arch = pulp::Arch::new();
+        let voltages = &self.voltages[..];
+        let n_inner = self.network.blocks.len() - self.network.boundary.len();
+        let (inner_blocks, outer_blocks) = self.network.blocks.split_at(n_inner);
+        let (inner_states, outer_states) = self.states.split_at_mut(n_inner);
+        let (inner_reflected, outer_reflected) = self.reflected.split_at_mut(n_inner);
+        let inner = || {
+            let fields = inner_states.par_chunks_mut(CHUNK).zip(inner_reflected.par_chunks_mut(CHUNK));
+            inner_blocks.par_chunks(CHUNK).zip(fields).for_each(|(blocks, (states, reflected))| {
+                arch.dispatch(Scatter { blocks, states, reflected, voltages, boundary: None });
+            });
+        };
+        let outer = || -> Vec<f64> {
+            let fields = outer_states.par_chunks_mut(CHUNK).zip(outer_reflected.par_chunks_mut(CHUNK));
+            let fixed = outer_blocks.par_chunks(CHUNK).zip(self.network.boundary.par_chunks(CHUNK));
+            let seen = fixed.zip(fields).map(|((blocks, terms), (states, reflected))| {
+                arch.dispatch(Scatter { blocks, states, reflected, voltages, boundary: Some((terms, signal)) })
+            });
+            seen.collect()
+        };
+        // Summed in the order of the blocks, whichever thread was first.
+        rayon::join(inner, outer).1.iter().sum()
+    }
 
-fn connect(network: &Network, states: &[State], voltages: &mut [f32]) {
-    let reflected = states.as_flattened().as_flattened();
-    let edges = &mut voltages[..network.n_edges];
-    edges.par_chunks_mut(EDGE_CHUNK).enumerate().for_each(|(chunk, voltages)| {
-        for (k, voltage) in voltages.iter_mut().enumerate() {
-            let e = chunk * EDGE_CHUNK + k;
-            let ports = &network.places[network.starts[e] as usize..network.starts[e + 1] as usize];
-            *voltage = network.weights[e] * ports.iter().map(|&p| reflected[p as usize]).sum::<f32>();
-        }
-    });
+    /// The voltage of every edge, from what its cells reflect.
+    fn connect(&mut self) {
+        let network = self.network;
+        let reflected = self.reflected.as_flattened().as_flattened();
+        let edges = &mut self.voltages[..network.n_edges];
+        edges.par_chunks_mut(EDGE_CHUNK).enumerate().for_each(|(chunk, voltages)| {
+            let first = chunk * EDGE_CHUNK;
+            let starts = &network.starts[first..=first + voltages.len()];
+            for ((voltage, bounds), weight) in voltages.iter_mut().zip(starts.windows(2)).zip(&network.weights[first..])
+            {
+                let ports = &network.places[bounds[0] as usize..bounds[1] as usize];
+                *voltage = weight * ports.iter().map(|&p| reflected[p as usize]).sum::<f32>();
+            }
+        });
+    }
 }

@@ -1,0 +1,109 @@
+//! From a project to S11: mesh, network, run, sweep.
+
+use super::PipelineError;
+use super::mesh::{MeshSettings, Meshed, Shape, mesh};
+use crate::project::Project;
+use crate::results::{FeedLine, Sweep, frequencies, sweep};
+use crate::task::Task;
+use crate::tlm::{Network, NetworkSettings, Pulse, Record, Run, StepLimit};
+use crate::units::from_mm;
+use std::time::Instant;
+
+/// What is solved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SolveSettings {
+    /// The mesh.
+    pub mesh: MeshSettings,
+    /// Lower and upper end of the band, Hz.
+    pub band: [f64; 2],
+    /// The run stops when the reflected voltage has fallen by this, dB (positive).
+    pub decay_db: f64,
+    /// It stops after this time at the latest, s.
+    pub longest: f64,
+}
+
+impl SolveSettings {
+    /// The usual stop rules.
+    #[must_use]
+    pub fn new(mesh: MeshSettings, band: [f64; 2]) -> Self {
+        Self { mesh, band, decay_db: 40.0, longest: 4e-9 }
+    }
+}
+
+/// A solved antenna.
+#[derive(Clone, Debug)]
+pub struct Solved {
+    /// Its mesh.
+    pub meshed: Meshed,
+    /// S11 at the ground's top, 50 ohm.
+    pub sweep: Sweep,
+    /// The port's time series.
+    pub record: Record,
+    /// The port's impedance as meshed, ohm: how well the line's circles are meshed.
+    pub port_impedance: f64,
+    /// Cells whose stubs were clipped for a longer step.
+    pub n_clipped: usize,
+    /// How far the reflected voltage had fallen, dB (negative).
+    pub residual_db: f64,
+    /// Cells times steps per second.
+    pub speed: f64,
+    /// Time spent, s.
+    pub seconds: f64,
+}
+
+/// Impedance that S11 refers to, ohm.
+const REFERENCE: f64 = 50.0;
+/// Share of cells whose stubs are clipped: doubles the step, shifts no resonance visibly.
+const CLIPPED: f64 = 0.003;
+/// Steps between two looks at the decay.
+const STRIDE: usize = 256;
+/// Distance of the frequencies, Hz.
+const RESOLUTION: f64 = 5e6;
+
+/// Meshes and solves an antenna.
+///
+/// # Errors
+/// [`PipelineError`] naming what to change.
+pub fn solve(project: &Project, shape: Shape, settings: &SolveSettings, task: &Task) -> Result<Solved, PipelineError> {
+    let started = Instant::now();
+    let [lo, hi] = settings.band;
+    let pulse = Pulse::new(lo, hi)?;
+    let meshed = mesh(project, shape, settings.mesh, task)?;
+    let network =
+        Network::new(&meshed.mesh, &NetworkSettings { loss_freq: pulse.center, step: StepLimit::Clip(CLIPPED) }, task)?;
+    let mut run = Run::new(&network, pulse);
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some ten thousand steps")]
+    let steps = |time: f64| (time / network.dt).ceil() as usize;
+    let n_most = steps(settings.longest);
+    let phase = task.phase("running the field", n_most);
+    // One period at the lower end of the band holds every oscillation's peak.
+    let window = 1.0 / lo;
+    let mut residual_db = 0.0;
+    while run.record().total.len() < n_most {
+        run.advance(STRIDE, task)?;
+        phase.advance(STRIDE);
+        if run.record().total.len() > steps(pulse.end() + window) {
+            residual_db = 20.0 * run.record().residual(window).log10();
+            if residual_db < -settings.decay_db {
+                break;
+            }
+        }
+    }
+    let params = project.antenna.to_params();
+    let line = FeedLine {
+        impedance: network.port_impedance,
+        length: from_mm(project.antenna.coax_length_mm + project.antenna.ground_thickness_mm),
+        eps_r: params.sheath.eps_r,
+        reference: REFERENCE,
+    };
+    Ok(Solved {
+        sweep: sweep(run.record(), &line, &frequencies(lo, hi, RESOLUTION)),
+        record: run.record().clone(),
+        port_impedance: network.port_impedance,
+        n_clipped: network.n_clipped,
+        residual_db,
+        speed: run.speed(),
+        seconds: started.elapsed().as_secs_f64(),
+        meshed,
+    })
+}
