@@ -22,7 +22,6 @@ fn fill_all_regions(bencher: Bencher<'_, '_>, (h_max_mm, grading): (f64, f64)) {
     let settings = SizingSettings { h_max: h_max_mm * 1e-3, grading };
     let run = || fill(black_box(&surface), &[], settings, &Task::default()).expect("it can be filled");
     let n_tets = run().mesh.tets.len();
-    println!("{n_tets} tetrahedra");
     bencher.counter(ItemsCount::new(n_tets)).bench(run);
 }
 

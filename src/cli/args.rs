@@ -32,6 +32,8 @@ pub enum Command {
     Export(ExportArgs),
     /// Mesh the antenna and the air around it with tetrahedra, or any surface complex
     Mesh(MeshArgs),
+    /// Solve the field of the antenna and report its reflection
+    Solve(SolveArgs),
     /// Prove an export's certificate anew from its files
     Verify(VerifyArgs),
     /// Compute the surface error over bend radius for many cages, as tables and plots
@@ -171,6 +173,28 @@ pub struct MeshArgs {
     #[arg(long, default_value = "sheet", conflicts_with = "surface")]
     pub(super) metal: MetalChoice,
     /// Write the mesh into this folder, in every format; made where it is missing
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: Option<PathBuf>,
+    /// Print JSON
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+/// Arguments of `solve`.
+#[derive(Debug, Args)]
+pub struct SolveArgs {
+    /// Project file
+    pub(super) file: PathBuf,
+    /// Which of the project's shapes
+    #[arg(long, default_value = "deformed")]
+    pub(super) shape: ExportShape,
+    /// How fine the mesh is
+    #[arg(long, default_value = "default")]
+    pub(super) density: DensityChoice,
+    /// Lower and upper end of the band, GHz [default: two thirds to four thirds of the patch's cavity resonance]
+    #[arg(long, value_names = ["LO", "HI"], num_args = 2)]
+    pub(super) band: Option<Vec<f64>>,
+    /// Write S11 as table, Touchstone and plot into this folder; made where it is missing
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
     /// Print JSON

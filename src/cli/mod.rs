@@ -18,6 +18,7 @@ mod new;
 mod plot;
 mod progress;
 mod report;
+mod solve;
 mod study;
 
 pub use args::Command;
@@ -92,6 +93,7 @@ fn dispatch(command: Command, task: &Task) -> Result<ExitCode> {
         Command::Compensate(args) => deform::compensate(&args, task)?,
         Command::Export(args) => export::export(&args, task)?,
         Command::Mesh(args) => mesh::run(&args, task)?,
+        Command::Solve(args) => solve::run(&args, task)?,
         Command::Verify(args) => return Ok(if export::verify(&args)? { ExitCode::SUCCESS } else { FAULTS.into() }),
         Command::Study(args) => study::run(&args, task)?,
         Command::Info(args) => info::run(&args)?,

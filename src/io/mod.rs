@@ -36,6 +36,7 @@ pub mod proof;
 mod rounding;
 pub mod stl;
 pub mod surface_json;
+pub mod touchstone;
 mod verify;
 pub mod vtu;
 mod weld;

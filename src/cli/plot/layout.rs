@@ -70,7 +70,7 @@ fn legend<B: DrawingBackend>(figure: &Figure, canvas: &Canvas<'_, B>) -> Result<
     let mut named: Vec<&str> = Vec::new();
     let all = || figure.panels.iter().flat_map(|p| &p.series);
     // References stand last, whatever panel a line first appears in.
-    for series in all().filter(|s| s.style == Style::Marked).chain(all().filter(|s| s.style == Style::Dashed)) {
+    for series in all().filter(|s| s.style != Style::Dashed).chain(all().filter(|s| s.style == Style::Dashed)) {
         if named.contains(&series.name.as_str()) {
             continue;
         }
@@ -98,7 +98,7 @@ impl Series {
 
     fn stroke<B: DrawingBackend>(&self, canvas: &Canvas<'_, B>, path: &[(f64, f64)]) -> Result<()> {
         match self.style {
-            Style::Marked => canvas.line(path, self.color, STROKE),
+            Style::Marked | Style::Plain => canvas.line(path, self.color, STROKE),
             Style::Dashed => canvas.dashed(path, self.color, STROKE),
         }
     }

@@ -65,6 +65,8 @@ pub(super) struct Series {
 pub(super) enum Style {
     /// A solid line with its points marked.
     Marked,
+    /// A solid line: many points.
+    Plain,
     /// A dashed line: a reference.
     Dashed,
 }
