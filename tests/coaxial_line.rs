@@ -76,6 +76,7 @@ fn reflection(mesh: &TetMesh, distance: f64, step: StepLimit) -> (Sweep, f64) {
     let network = Network::new(mesh, &NetworkSettings { loss_freq: 10e9, step }, &Task::default()).unwrap();
     let pulse = Pulse::new(5e9, 15e9).unwrap();
     let mut run = Run::new(&network, pulse);
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some thousand steps")]
     let n_steps = ((pulse.end() + 6.0 * LENGTH * EPS_R.sqrt() / C0) / network.dt).ceil() as usize;
     run.advance(n_steps, &Task::default()).unwrap();
     let impedance = network.port_impedance;
