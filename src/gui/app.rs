@@ -4,13 +4,16 @@ use super::command::{Command, Facts};
 use super::dialogs::{Dialog, Next, PathDialog, Purpose};
 use super::export_dialog::ExportDialog;
 use super::field::Refused;
+use super::mesh_export::MeshExport;
+use super::mesh_session::{MeshNews, MeshSession};
 use super::outbox::{Action, Outbox};
 use super::session::{News, Session, first_project};
 use super::status::{self, Messages, Weight};
 use super::theme;
-use super::ui_state::{Tab, UiState};
-use super::viewport::Viewport;
-use super::{paint, panel_antenna, panel_cage, panel_compensation, panel_distortion};
+use super::ui_state::{RightTab, Tab, UiState};
+use super::viewport::{Sources, Viewport};
+use super::{paint, panel_antenna, panel_cage, panel_compensation, panel_distortion, panel_mesh};
+use crate::pipeline::mesh_job::MeshJob;
 use crate::pipeline::worker::Worker;
 use crate::project::{CompensationMode, Edit, PresetEntry, Settings, file};
 use crate::render::Projection;
@@ -25,6 +28,7 @@ const SIDE_WIDTHS: [f32; 2] = [300.0, 316.0];
 #[derive(Debug)]
 pub(super) struct App {
     pub(super) session: Session,
+    pub(super) mesh: MeshSession,
     pub(super) state: UiState,
     viewport: Viewport,
     dialog: Dialog,
@@ -45,10 +49,14 @@ impl App {
         let mut state: UiState = cc.storage.and_then(|s| eframe::get_value(s, STATE_KEY)).unwrap_or_default();
         state.restore_camera();
         cc.egui_ctx.set_theme(state.theme);
-        let ctx = cc.egui_ctx.clone();
-        let worker = Worker::spawn(move || ctx.request_repaint());
+        let wake = || {
+            let ctx = cc.egui_ctx.clone();
+            move || ctx.request_repaint()
+        };
+        let worker = Worker::spawn(wake());
         let mut app = Self {
             session: Session::new(first_project(), None, worker),
+            mesh: MeshSession::new(MeshJob::spawn(wake())),
             state,
             viewport: Viewport::default(),
             dialog: Dialog::None,
@@ -70,6 +78,8 @@ impl App {
             can_redo: history.can_redo(),
             has_selection: !self.state.selection.is_empty(),
             has_hand_edits: !project.hand_edits.is_empty(),
+            has_mesh: self.mesh.shown().is_some(),
+            shows_mesh: self.state.mesh.shows,
             compensates: project.settings.compensation != CompensationMode::None,
             orthographic: self.state.camera.projection == Projection::Orthographic,
             shows_cage: self.state.shows_cage,
@@ -93,13 +103,13 @@ impl App {
             });
         };
         egui::MenuBar::new().ui(ui, |ui| {
-            menu(ui, "File", vec![C::New, C::Open, C::Save, C::SaveAs, C::Export, C::Quit], out);
+            menu(ui, "File", vec![C::New, C::Open, C::Save, C::SaveAs, C::Export, C::ExportMesh, C::Quit], out);
             let edit = [C::Undo, C::Redo, C::SelectAll, C::SelectNone, C::BoxSelect, C::ResetSelected, C::ResetAll];
             menu(ui, "Edit", edit.to_vec(), out);
-            menu(ui, "Antenna", vec![C::Compensate, C::CompensateNot], out);
+            menu(ui, "Antenna", vec![C::Compensate, C::CompensateNot, C::Mesh], out);
             let mut view: Vec<Command> = vec![C::Fit];
             view.extend(all(|c| matches!(c, C::LookFrom(_))));
-            view.extend([C::Orthographic, C::ShowCage, C::SeeThrough, C::ShowLog]);
+            view.extend([C::Orthographic, C::ShowCage, C::SeeThrough, C::ShowMesh, C::ShowLog]);
             menu(ui, "View", view, out);
             menu(ui, "Theme", all(|c| matches!(c, C::Theme(_))).collect(), out);
             menu(ui, "Help", vec![C::Keys], out);
@@ -108,10 +118,11 @@ impl App {
 
     fn toolbar(&self, ui: &mut Ui, facts: &Facts, out: &mut Outbox) {
         use Command as C;
-        let groups: [&[Command]; 5] = [
+        let groups: [&[Command]; 6] = [
             &[C::Open, C::Save, C::Export],
             &[C::Undo, C::Redo],
             &[C::Compensate, C::CompensateNot],
+            &[C::Mesh, C::ShowMesh],
             &[C::BoxSelect, C::SelectNone],
             &[C::Fit, C::Orthographic, C::ShowCage],
         ];
@@ -129,7 +140,7 @@ impl App {
         });
     }
 
-    fn side_panels(&mut self, ui: &mut Ui, out: &mut Outbox) {
+    fn side_panels(&mut self, ui: &mut Ui, facts: &Facts, out: &mut Outbox) {
         let pose = self.session.pose().cloned();
         Panel::left("left").default_size(SIDE_WIDTHS[0]).size_range(260.0..=420.0).show(ui, |ui| {
             ui.add_space(4.0);
@@ -148,13 +159,26 @@ impl App {
         });
         Panel::right("right").default_size(SIDE_WIDTHS[1]).size_range(280.0..=440.0).show(ui, |ui| {
             ui.add_space(4.0);
-            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-                ui.heading("Distortion");
-                panel_distortion::ui(ui, &self.session, &mut self.state);
-                ui.add_space(6.0);
-                ui.separator();
-                ui.heading("Compensation");
-                panel_compensation::ui(ui, &self.session, Refused(self.state.refused.as_ref()), out);
+            ui.horizontal(|ui| {
+                let tip = "Distortion of the deformed antenna and its compensation";
+                ui.selectable_value(&mut self.state.right_tab, RightTab::Figures, "Shape").on_hover_text(tip);
+                let tip = "The tetrahedral mesh of the antenna and the air around it";
+                ui.selectable_value(&mut self.state.right_tab, RightTab::Mesh, "Mesh").on_hover_text(tip);
+            });
+            ui.separator();
+            let tab = self.state.right_tab;
+            ScrollArea::vertical().auto_shrink(false).id_salt(tab == RightTab::Mesh).show(ui, |ui| match tab {
+                RightTab::Figures => {
+                    ui.heading("Distortion");
+                    panel_distortion::ui(ui, &self.session, &mut self.state);
+                    ui.add_space(6.0);
+                    ui.separator();
+                    ui.heading("Compensation");
+                    panel_compensation::ui(ui, &self.session, Refused(self.state.refused.as_ref()), out);
+                }
+                RightTab::Mesh => {
+                    panel_mesh::ui(ui, self.session.project(), &self.mesh, facts, &mut self.state, out);
+                }
             });
         });
     }
@@ -176,6 +200,8 @@ impl App {
             }
             Action::Run(command) => self.run(ctx, command),
             Action::StopWork => self.session.stop_work(),
+            Action::CancelMesh => self.mesh.cancel(),
+            Action::Say(weight, text) => self.messages.say(weight, &text),
             Action::OpenPath(path) => self.open(&path),
             Action::SavePath(path) => {
                 let then = match &self.dialog {
@@ -190,6 +216,7 @@ impl App {
             Action::AskOpen => self.ask_open(),
             Action::Start(project) => {
                 self.session.replace(*project, None);
+                self.forget_mesh();
                 self.state.fit = true;
                 self.state.selection.clear();
             }
@@ -236,6 +263,18 @@ impl App {
             Command::ResetAll => self.edit("hand edits", Edit::ClearHandEdits),
             Command::Compensate => self.compensate(CompensationMode::Isometric),
             Command::CompensateNot => self.compensate(CompensationMode::None),
+            Command::Mesh => {
+                state.right_tab = RightTab::Mesh;
+                self.mesh.start(self.session.project(), &state.mesh);
+            }
+            Command::ExportMesh => {
+                if let Some(mesh) = self.mesh.shown() {
+                    let is_stale = mesh.is_stale(self.session.project());
+                    let dialog = MeshExport::new(mesh, is_stale, &self.folder(), &self.session.name());
+                    self.dialog = Dialog::MeshExport(Box::new(dialog));
+                }
+            }
+            Command::ShowMesh => state.show_mesh(!state.mesh.shows),
             Command::Fit => state.fit = true,
             Command::LookFrom(view) => state.camera.look_from(view),
             Command::Orthographic => {
@@ -252,6 +291,24 @@ impl App {
                 ctx.set_theme(theme);
             }
             Command::Keys => self.dialog = Dialog::Keys,
+        }
+    }
+
+    fn forget_mesh(&mut self) {
+        self.mesh.clear();
+        self.state.forget_mesh();
+    }
+
+    /// Takes what the meshing thread has to say; the first mesh is shown at once.
+    fn sync_mesh(&mut self) {
+        match self.mesh.sync() {
+            None => {}
+            Some(MeshNews::Made(text)) => {
+                self.state.mesh.chosen = None;
+                self.state.show_mesh(true);
+                self.messages.say(Weight::Good, &text);
+            }
+            Some(MeshNews::Failed(text)) => self.messages.say(Weight::Error, &format!("No mesh: {text}")),
         }
     }
 
@@ -330,6 +387,7 @@ impl App {
         match file::read(path) {
             Ok(project) => {
                 self.session.replace(project, Some(path.to_owned()));
+                self.forget_mesh();
                 self.state.last_folder = path.parent().map(Path::to_owned);
                 self.state.selection.clear();
                 self.state.fit = true;
@@ -368,6 +426,7 @@ impl eframe::App for App {
         for news in self.session.sync() {
             self.tell(news);
         }
+        self.sync_mesh();
         let facts = self.facts();
         let mut out = Outbox::default();
         let is_modal = !matches!(self.dialog, Dialog::None);
@@ -382,10 +441,12 @@ impl eframe::App for App {
         if self.state.shows_log {
             Panel::bottom("log").resizable(true).default_size(110.0).show(ui, |ui| self.messages.log(ui));
         }
-        self.side_panels(ui, &mut out);
+        self.side_panels(ui, &facts, &mut out);
         let pose = self.session.pose().cloned();
         CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
-            self.viewport.ui(ui, &self.session, pose.as_ref(), &mut self.state, &mut out);
+            let mesh = self.mesh.shown().filter(|_| self.state.mesh.shows);
+            let sources = Sources { session: &self.session, pose: pose.as_ref(), mesh };
+            self.viewport.ui(ui, sources, &mut self.state, &mut out);
         });
         let name = self.session.name();
         self.dialog.ui(&ctx, &name, &mut self.state, &mut out);
@@ -398,8 +459,8 @@ impl eframe::App for App {
         for news in self.session.sync() {
             self.tell(news);
         }
-        if self.session.is_busy() {
-            // For the progress in the status line.
+        if self.session.is_busy() || self.mesh.is_busy() {
+            // For the progress.
             ctx.request_repaint_after(std::time::Duration::from_millis(100));
         }
     }

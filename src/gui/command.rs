@@ -23,6 +23,9 @@ pub(super) enum Command {
     ResetAll,
     Compensate,
     CompensateNot,
+    Mesh,
+    ExportMesh,
+    ShowMesh,
     Fit,
     LookFrom(StandardView),
     Orthographic,
@@ -42,6 +45,8 @@ pub(super) struct Facts {
     pub(super) has_selection: bool,
     pub(super) has_hand_edits: bool,
     pub(super) compensates: bool,
+    pub(super) has_mesh: bool,
+    pub(super) shows_mesh: bool,
     pub(super) orthographic: bool,
     pub(super) shows_cage: bool,
     pub(super) sees_through: bool,
@@ -52,7 +57,7 @@ pub(super) struct Facts {
 
 impl Command {
     /// All commands, in the order of the menus.
-    pub(super) const ALL: [Self; 31] = [
+    pub(super) const ALL: [Self; 34] = [
         Self::New,
         Self::Open,
         Self::Save,
@@ -68,6 +73,9 @@ impl Command {
         Self::ResetAll,
         Self::Compensate,
         Self::CompensateNot,
+        Self::Mesh,
+        Self::ExportMesh,
+        Self::ShowMesh,
         Self::Fit,
         Self::LookFrom(StandardView::Front),
         Self::LookFrom(StandardView::Back),
@@ -106,7 +114,10 @@ impl Command {
             Self::ResetAll => ("Reset all vertices", "Remove all hand edits of the cage"),
             Self::Compensate => ("Compensate", "Change the flat antenna so that it keeps its size when deformed"),
             Self::CompensateNot => ("No compensation", "Deform the antenna as drawn"),
-            Self::Fit => ("Fit", "Show all of the antenna and its cage"),
+            Self::Mesh => ("Mesh", "Fill the antenna and the air around it with tetrahedra"),
+            Self::ExportMesh => ("Export mesh…", "Write the mesh for a field solver or a viewer"),
+            Self::ShowMesh => ("Mesh view", "Show the mesh, cut open, instead of the antenna in its cage"),
+            Self::Fit => ("Fit", "Show all of the antenna and its cage, or of the mesh"),
             Self::LookFrom(view) => match view {
                 StandardView::Front => ("Front", "Look along +y, x to the right"),
                 StandardView::Back => ("Back", "Look along -y"),
@@ -148,6 +159,9 @@ impl Command {
             Self::BoxSelect => vec![plain(Key::B)],
             Self::ResetSelected => vec![plain(Key::Delete), plain(Key::Backspace)],
             Self::Compensate => vec![command(Key::Enter)],
+            Self::Mesh => vec![plain(Key::M)],
+            Self::ExportMesh => vec![command_shift(Key::E)],
+            Self::ShowMesh => vec![plain(Key::V)],
             Self::Fit => vec![plain(Key::F), plain(Key::Home)],
             Self::LookFrom(StandardView::Front) => vec![plain(Key::Num1)],
             Self::LookFrom(StandardView::Back) => vec![control(Key::Num1)],
@@ -173,6 +187,7 @@ impl Command {
             Self::ResetSelected => facts.has_selection && facts.has_hand_edits,
             Self::ResetAll => facts.has_hand_edits,
             Self::CompensateNot => facts.compensates,
+            Self::ExportMesh | Self::ShowMesh => facts.has_mesh,
             _ => true,
         }
     }
@@ -181,6 +196,7 @@ impl Command {
     pub(super) fn is_ticked(self, facts: &Facts) -> Option<bool> {
         match self {
             Self::Orthographic => Some(facts.orthographic),
+            Self::ShowMesh => Some(facts.shows_mesh),
             Self::ShowCage => Some(facts.shows_cage),
             Self::SeeThrough => Some(facts.sees_through),
             Self::ShowLog => Some(facts.shows_log),

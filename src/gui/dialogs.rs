@@ -5,6 +5,7 @@
 
 use super::command::Command;
 use super::export_dialog::ExportDialog;
+use super::mesh_export::MeshExport;
 use super::outbox::{Action, Outbox};
 use super::session::first_project;
 use super::theme::Tokens;
@@ -22,6 +23,8 @@ pub(super) enum Purpose {
     Open,
     Save,
     Folder,
+    /// A file to write a mesh to.
+    Mesh,
 }
 
 /// What to do once the unsaved changes are dealt with.
@@ -40,6 +43,7 @@ pub(super) enum Dialog {
     Path(PathDialog),
     Unsaved(Next),
     Export(Box<ExportDialog>),
+    MeshExport(Box<MeshExport>),
     Keys,
 }
 
@@ -96,12 +100,12 @@ impl PathField {
             let folder = path.parent().map(Path::to_owned).unwrap_or_default();
             let dialog = rfd::FileDialog::new().set_directory(folder);
             let dialog = match purpose {
-                Purpose::Folder => dialog,
+                Purpose::Folder | Purpose::Mesh => dialog,
                 _ => dialog.add_filter("Conformant project", &[ENDING]),
             };
             let chosen = match purpose {
                 Purpose::Open => dialog.pick_file(),
-                Purpose::Save => dialog.save_file(),
+                Purpose::Save | Purpose::Mesh => dialog.save_file(),
                 Purpose::Folder => dialog.pick_folder(),
             };
             // The window may be gone by now.
@@ -184,7 +188,8 @@ impl PathDialog {
     }
 }
 
-fn problem_with(path: &Path, saves: bool) -> Option<&'static str> {
+/// Why a path cannot be used, to be shown below it.
+pub(super) fn problem_with(path: &Path, saves: bool) -> Option<&'static str> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
     if path.as_os_str().is_empty() {
         Some("Type the path of a file.")
@@ -213,6 +218,7 @@ impl Dialog {
                 Self::Path(dialog) => dialog.ui(ui, out),
                 Self::Unsaved(next) => unsaved(ui, *next, name, out),
                 Self::Export(dialog) => dialog.ui(ui, state),
+                Self::MeshExport(dialog) => dialog.ui(ui, state, out),
                 Self::Keys => keys(ui),
             }
         });
@@ -223,7 +229,11 @@ impl Dialog {
     }
 
     fn is_working(&self) -> bool {
-        matches!(self, Self::Export(dialog) if dialog.is_working())
+        match self {
+            Self::Export(dialog) => dialog.is_working(),
+            Self::MeshExport(dialog) => dialog.is_working(),
+            _ => false,
+        }
     }
 }
 

@@ -31,7 +31,7 @@ impl Which {
 }
 
 /// What became of an export or a verification, in lines to show.
-type Outcome = Result<Vec<String>, String>;
+pub(super) type Outcome = Result<Vec<String>, String>;
 
 #[derive(Debug)]
 enum Phase {
@@ -179,7 +179,7 @@ impl ExportDialog {
 }
 
 /// Runs a job on a thread of its own and wakes the window at its end.
-fn work(ui: &Ui, job: impl FnOnce() -> anyhow::Result<Vec<String>> + Send + 'static) -> Receiver<Outcome> {
+pub(super) fn work(ui: &Ui, job: impl FnOnce() -> anyhow::Result<Vec<String>> + Send + 'static) -> Receiver<Outcome> {
     let (sender, receiver) = channel();
     let ctx = ui.ctx().clone();
     let run = move || {
@@ -192,7 +192,7 @@ fn work(ui: &Ui, job: impl FnOnce() -> anyhow::Result<Vec<String>> + Send + 'sta
     receiver
 }
 
-fn answer(receiver: &Receiver<Outcome>) -> Option<Outcome> {
+pub(super) fn answer(receiver: &Receiver<Outcome>) -> Option<Outcome> {
     match receiver.try_recv() {
         Ok(outcome) => Some(outcome),
         Err(TryRecvError::Empty) => None,
@@ -200,14 +200,14 @@ fn answer(receiver: &Receiver<Outcome>) -> Option<Outcome> {
     }
 }
 
-fn busy(ui: &mut Ui, what: &str) {
+pub(super) fn busy(ui: &mut Ui, what: &str) {
     ui.horizontal(|ui| {
         ui.add(Spinner::new());
         ui.label(what);
     });
 }
 
-fn show(ui: &mut Ui, outcome: &Outcome) {
+pub(super) fn show(ui: &mut Ui, outcome: &Outcome) {
     let tokens = Tokens::here(ui);
     match outcome {
         Ok(lines) => {

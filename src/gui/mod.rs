@@ -1,7 +1,7 @@
 //! The window: a cage editor over the pipeline.
 //!
 //! It owns what the user looks at (`ui_state`), the open project with its history (`session`) and one worker
-//! thread. Each frame: replies are collected, panels and the 3-D view are drawn from plain values and put their wishes
+//! thread, and the mesh made of it by another (`mesh_session`). Each frame: replies are collected, panels and the 3-D view are drawn from plain values and put their wishes
 //! into an outbox (`outbox`), the wishes are carried out (`app`), and the worker is sent the project if it changed.
 //! Lengths here are millimetres, as in the project file; `scene` turns the domain into a picture.
 //!
@@ -19,6 +19,9 @@ mod command;
 mod dialogs;
 mod export_dialog;
 mod field;
+mod mesh_export;
+mod mesh_scene;
+mod mesh_session;
 mod outbox;
 mod overlay;
 mod paint;
@@ -26,6 +29,7 @@ mod panel_antenna;
 mod panel_cage;
 mod panel_compensation;
 mod panel_distortion;
+mod panel_mesh;
 mod picture;
 mod preset_fields;
 mod scene;

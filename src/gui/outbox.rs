@@ -2,6 +2,7 @@
 
 use super::command::Command;
 use super::dialogs::Next;
+use super::status::Weight;
 use crate::project::{Edit, PresetSpec, Project};
 use std::path::PathBuf;
 
@@ -22,6 +23,10 @@ pub(super) enum Action {
     AddPreset(PresetSpec),
     /// Stops the computation under way.
     StopWork,
+    /// Calls the meshing off.
+    CancelMesh,
+    /// Tells the user something.
+    Say(Weight, String),
     /// Opens a project file.
     OpenPath(PathBuf),
     /// Saves to a project file.

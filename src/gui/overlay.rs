@@ -1,8 +1,9 @@
 //! Lettering over the 3-D view: view name, axes, scale bar, colour bar, and hints while something is dragged.
 
+use super::mesh_scene::{ANGLE_RANGE, Look};
 use super::session::Pose;
 use super::theme::Tokens;
-use super::ui_state::{Heat, UiState};
+use super::ui_state::{MeshPaint, UiState};
 use super::viewport::Lock;
 use crate::geometry::DVec3;
 use crate::render::pick::surface_at;
@@ -21,7 +22,7 @@ fn font() -> FontId {
     FontId::proportional(12.0)
 }
 
-/// Draws what is always there, and the colour bar if `range` (percent) says that something is painted.
+/// Draws what is always there, and the colour bar if `range` (percent) says that something is painted on the antenna.
 pub(super) fn draw(ui: &Ui, rect: Rect, view: &View, state: &UiState, range: Option<f32>) {
     let painter = ui.painter().with_clip_rect(rect);
     let tokens = Tokens::here(ui);
@@ -30,8 +31,35 @@ pub(super) fn draw(ui: &Ui, rect: Rect, view: &View, state: &UiState, range: Opt
     axes(&painter, rect, view, tokens);
     scale_bar(&painter, rect, view, tokens);
     if let Some(range) = range {
-        color_bar(&painter, rect, state.heat, range, tokens);
+        let digits = if range < 1.0 { 2 } else { 1 };
+        let tick = |k: u8| match k {
+            2 => "0 %".to_owned(),
+            _ => format!("{:+.digits$} %", range * (1.0 - f32::from(k) / 2.0)),
+        };
+        let scale = ColorBar { map: ColorMap::CoolWarm, title: state.heat.text(), ticks: [0, 1, 2, 3, 4].map(tick) };
+        scale.draw(&painter, rect, tokens);
     }
+}
+
+/// Draws what a picture of a mesh needs: a legend or a scale, and whether the mesh is out of date.
+pub(super) fn mesh(ui: &Ui, rect: Rect, looks: impl Iterator<Item = Look>, paint: MeshPaint, is_stale: bool) {
+    let painter = ui.painter().with_clip_rect(rect);
+    let tokens = Tokens::here(ui);
+    if is_stale {
+        let place = rect.min + vec2(MARGIN, MARGIN + 16.0);
+        let text = "⚠ Out of date: the geometry has changed since";
+        painter.text(place, Align2::LEFT_TOP, text, font(), tokens.warning);
+    }
+    let mut top = 0.0;
+    if paint == MeshPaint::Angle {
+        let [low, high] = ANGLE_RANGE;
+        let tick = |k: usize| format!("{:.0}°", high + (low - high) * k as f32 / 4.0);
+        let mut ticks = [0, 1, 2, 3, 4].map(tick);
+        ticks[0].insert_str(0, "≥ ");
+        ColorBar { map: ColorMap::Viridis, title: "Smallest dihedral angle", ticks }.draw(&painter, rect, tokens);
+        top = 22.0 + (rect.height() * 0.4).clamp(80.0, 240.0) + 18.0;
+    }
+    legend(&painter, rect, top, looks.map(|look| (look.text(), look.color(tokens))), tokens);
 }
 
 /// What the camera shows, in words.
@@ -84,36 +112,65 @@ fn scale_bar(painter: &Painter, rect: Rect, view: &View, tokens: &Tokens) {
     painter.text(left.lerp(right, 0.5) - vec2(0.0, 4.0), Align2::CENTER_BOTTOM, text, font(), tokens.text);
 }
 
-fn color_bar(painter: &Painter, rect: Rect, heat: Heat, range: f32, tokens: &Tokens) {
-    let height = (rect.height() * 0.4).clamp(80.0, 240.0);
-    let top = pos2(rect.right() - MARGIN - 60.0, rect.top() + MARGIN + 22.0);
-    let bar = Rect::from_min_size(top, vec2(14.0, height));
-    let mut mesh = egui::Mesh::default();
-    const STEPS: u32 = 64;
-    for k in 0..=STEPS {
-        let t = k as f32 / STEPS as f32;
-        let [r, g, b] = colormap::color(ColorMap::CoolWarm, 1.0 - t);
-        let y = bar.top() + t * height;
-        mesh.colored_vertex(pos2(bar.left(), y), Color32::from_rgb(r, g, b));
-        mesh.colored_vertex(pos2(bar.right(), y), Color32::from_rgb(r, g, b));
-        if k > 0 {
-            mesh.add_triangle(2 * k - 2, 2 * k - 1, 2 * k);
-            mesh.add_triangle(2 * k - 1, 2 * k + 1, 2 * k);
+/// A scale of colours at the top right.
+#[derive(Clone, Debug)]
+pub(super) struct ColorBar<'a> {
+    pub(super) map: ColorMap,
+    pub(super) title: &'a str,
+    /// Values in equal steps, from the top.
+    pub(super) ticks: [String; 5],
+}
+
+impl ColorBar<'_> {
+    /// Draws it.
+    pub(super) fn draw(&self, painter: &Painter, rect: Rect, tokens: &Tokens) {
+        let height = (rect.height() * 0.4).clamp(80.0, 240.0);
+        let top = pos2(rect.right() - MARGIN - 60.0, rect.top() + MARGIN + 22.0);
+        let bar = Rect::from_min_size(top, vec2(14.0, height));
+        let mut mesh = egui::Mesh::default();
+        const STEPS: u32 = 64;
+        for k in 0..=STEPS {
+            let t = k as f32 / STEPS as f32;
+            let [r, g, b] = colormap::color(self.map, 1.0 - t);
+            let y = bar.top() + t * height;
+            mesh.colored_vertex(pos2(bar.left(), y), Color32::from_rgb(r, g, b));
+            mesh.colored_vertex(pos2(bar.right(), y), Color32::from_rgb(r, g, b));
+            if k > 0 {
+                mesh.add_triangle(2 * k - 2, 2 * k - 1, 2 * k);
+                mesh.add_triangle(2 * k - 1, 2 * k + 1, 2 * k);
+            }
         }
+        painter.add(mesh);
+        painter.rect_stroke(bar, 0.0, Stroke::new(1.0, tokens.text), StrokeKind::Outside);
+        for (k, text) in self.ticks.iter().enumerate() {
+            let y = bar.top() + k as f32 / 4.0 * height;
+            painter.line_segment([pos2(bar.right(), y), pos2(bar.right() + 4.0, y)], Stroke::new(1.0, tokens.text));
+            painter.text(pos2(bar.right() + 7.0, y), Align2::LEFT_CENTER, text, font(), tokens.text);
+        }
+        let title = pos2(rect.right() - MARGIN, rect.top() + MARGIN - 2.0);
+        painter.text(title, Align2::RIGHT_TOP, self.title, font(), tokens.text);
     }
-    painter.add(mesh);
-    painter.rect_stroke(bar, 0.0, Stroke::new(1.0, tokens.text), StrokeKind::Outside);
-    let digits = if range < 1.0 { 2 } else { 1 };
-    for k in 0..5u8 {
-        let t = f32::from(k) / 4.0;
-        let y = bar.top() + t * height;
-        let value = range * (1.0 - 2.0 * t);
-        painter.line_segment([pos2(bar.right(), y), pos2(bar.right() + 4.0, y)], Stroke::new(1.0, tokens.text));
-        let text = if k == 2 { "0 %".to_owned() } else { format!("{value:+.digits$} %") };
-        painter.text(pos2(bar.right() + 7.0, y), Align2::LEFT_CENTER, text, font(), tokens.text);
+}
+
+/// Names beside fields of their colours, at the top right below `top` points.
+pub(super) fn legend<'a>(
+    painter: &Painter,
+    rect: Rect,
+    top: f32,
+    entries: impl Iterator<Item = (&'a str, Color32)>,
+    tokens: &Tokens,
+) {
+    let lines: Vec<_> =
+        entries.map(|(n, color)| (painter.layout_no_wrap(n.to_owned(), font(), tokens.text), color)).collect();
+    let width = lines.iter().map(|(text, _)| text.size().x).fold(0.0, f32::max);
+    let left = rect.right() - MARGIN - width;
+    for (k, (text, color)) in lines.into_iter().enumerate() {
+        let middle = rect.top() + MARGIN + 6.0 + top + 19.0 * k as f32;
+        let field = Rect::from_center_size(pos2(left - 14.0, middle), vec2(13.0, 13.0));
+        painter.rect(field, 2.0, color, Stroke::new(1.0, tokens.weak), StrokeKind::Outside);
+        let at = pos2(left, middle - text.size().y / 2.0);
+        painter.galley(at, text, tokens.text);
     }
-    let title = pos2(rect.right() - MARGIN, rect.top() + MARGIN - 2.0);
-    painter.text(title, Align2::RIGHT_TOP, heat.text(), font(), tokens.text);
 }
 
 /// The box that is being drawn.

@@ -42,6 +42,11 @@ pub(super) struct Tokens {
     pub(super) pin: Color32,
     pub(super) substrate: Color32,
     pub(super) coax: Color32,
+    /// Air and port of a mesh, its edges, and cells that call for attention.
+    pub(super) air: Color32,
+    pub(super) port: Color32,
+    pub(super) mesh_edge: Color32,
+    pub(super) signal: Color32,
     /// Outlines of the antenna's parts.
     pub(super) crease: Color32,
     /// Lines of the cage.
@@ -71,6 +76,10 @@ static DARK: Tokens = Tokens {
     pin: rgb(214, 184, 98),
     substrate: rgb(196, 204, 190),
     coax: rgb(226, 228, 232),
+    air: rgb(104, 132, 168),
+    port: rgb(120, 200, 110),
+    mesh_edge: rgb(18, 22, 30),
+    signal: rgb(255, 64, 160),
     crease: rgb(24, 26, 30),
     cage: rgb(120, 178, 240),
     handles: [rgb(206, 224, 246), rgb(255, 226, 120), rgb(255, 158, 44), rgb(120, 124, 130)],
@@ -97,6 +106,10 @@ static LIGHT: Tokens = Tokens {
     pin: rgb(196, 162, 70),
     substrate: rgb(214, 220, 206),
     coax: rgb(244, 245, 247),
+    air: rgb(178, 204, 234),
+    port: rgb(96, 176, 90),
+    mesh_edge: rgb(40, 56, 82),
+    signal: rgb(214, 0, 120),
     crease: rgb(60, 64, 72),
     cage: rgb(26, 92, 172),
     handles: [rgb(255, 255, 255), rgb(255, 208, 60), rgb(240, 122, 0), rgb(160, 165, 172)],

@@ -1,6 +1,8 @@
 //! What the user looks at and has selected: never part of a project, never undone, kept between runs.
 
+use crate::pipeline::{Density, Shape};
 use crate::render::{Camera, Projection, Vec3};
+use crate::tet::Metal;
 use egui::ThemePreference;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -44,6 +46,73 @@ impl Heat {
     }
 }
 
+/// Which panels the right side shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) enum RightTab {
+    /// Distortion and compensation.
+    #[default]
+    Figures,
+    /// The tetrahedral mesh.
+    Mesh,
+}
+
+/// What the colours of a mesh show.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum MeshPaint {
+    /// What the cells are made of.
+    #[default]
+    Region,
+    /// Their smallest dihedral angle.
+    Angle,
+}
+
+/// What is meshed, and how the mesh is looked at.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(clippy::struct_excessive_bools, reason = "each is an independent switch of the view")]
+pub(super) struct MeshUi {
+    pub(super) shape: Shape,
+    pub(super) density: Density,
+    pub(super) metal: Metal,
+    /// Whether the view shows the mesh instead of the antenna.
+    pub(super) shows: bool,
+    /// Axis across which the mesh is cut.
+    pub(super) axis: usize,
+    /// Place of the cut along its axis, mm.
+    pub(super) place_mm: f64,
+    /// Keeps what is below the place instead of what is above.
+    pub(super) flipped: bool,
+    /// Whether the antenna is cut too, and not only the air around it.
+    pub(super) cuts_antenna: bool,
+    pub(super) shows_air: bool,
+    pub(super) paint: MeshPaint,
+    /// Whether the worst cells are marked.
+    pub(super) marks_worst: bool,
+    /// The worst cell last chosen, by its place in the list.
+    pub(super) chosen: Option<usize>,
+    /// The camera of the view that is not on show.
+    pub(super) other_camera: Option<Camera>,
+}
+
+impl Default for MeshUi {
+    fn default() -> Self {
+        Self {
+            shape: Shape::default(),
+            density: Density::default(),
+            metal: Metal::default(),
+            shows: false,
+            axis: 1,
+            place_mm: 0.0,
+            flipped: false,
+            cuts_antenna: true,
+            shows_air: true,
+            paint: MeshPaint::default(),
+            marks_worst: true,
+            chosen: None,
+            other_camera: None,
+        }
+    }
+}
+
 /// The camera as it is kept between runs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct SavedCamera {
@@ -60,6 +129,7 @@ pub(super) struct SavedCamera {
 #[allow(clippy::struct_excessive_bools, reason = "each is an independent switch of the window")]
 pub(super) struct UiState {
     pub(super) tab: Tab,
+    pub(super) right_tab: RightTab,
     pub(super) theme: ThemePreference,
     pub(super) heat: Heat,
     /// Half range of the colour bar in percent, where the user fixed it.
@@ -75,6 +145,8 @@ pub(super) struct UiState {
     /// Where the last file or folder was.
     pub(super) last_folder: Option<std::path::PathBuf>,
     camera_kept: Option<SavedCamera>,
+    #[serde(skip)]
+    pub(super) mesh: MeshUi,
     /// Selected cage vertices.
     #[serde(skip)]
     pub(super) selection: BTreeSet<u32>,
@@ -95,6 +167,7 @@ impl Default for UiState {
     fn default() -> Self {
         Self {
             tab: Tab::default(),
+            right_tab: RightTab::default(),
             theme: ThemePreference::System,
             heat: Heat::None,
             heat_range: None,
@@ -106,6 +179,7 @@ impl Default for UiState {
             guess_ohm: 50.0,
             last_folder: None,
             camera_kept: None,
+            mesh: MeshUi::default(),
             selection: BTreeSet::new(),
             selects_by_box: false,
             camera: Camera::default(),
@@ -116,9 +190,27 @@ impl Default for UiState {
 }
 
 impl UiState {
-    /// Notes the camera for the next run.
+    /// Shows the mesh or the antenna; each keeps its own camera, and is fitted when it is shown first.
+    pub(super) fn show_mesh(&mut self, shows: bool) {
+        if std::mem::replace(&mut self.mesh.shows, shows) != shows {
+            let here = self.camera;
+            match self.mesh.other_camera.replace(here) {
+                Some(other) => self.camera = other,
+                None => self.fit = true,
+            }
+        }
+    }
+
+    /// Goes back to the antenna: there is no mesh any more.
+    pub(super) fn forget_mesh(&mut self) {
+        self.show_mesh(false);
+        self.mesh.other_camera = None;
+        self.mesh.chosen = None;
+    }
+
+    /// Notes the antenna's camera for the next run.
     pub(super) fn keep_camera(&mut self) {
-        let c = &self.camera;
+        let c = if self.mesh.shows { self.mesh.other_camera.as_ref().unwrap_or(&self.camera) } else { &self.camera };
         self.camera_kept = Some(SavedCamera {
             target: c.target.to_array(),
             yaw: c.yaw,

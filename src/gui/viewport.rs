@@ -4,6 +4,8 @@
 //! undo step per drag, live; empty ground turns the view (left), slides it (middle, right or Shift) or draws a
 //! selection box (Ctrl, or after B). Places are points from the top left of the view.
 
+use super::mesh_scene::MeshScene;
+use super::mesh_session::ShownMesh;
 use super::outbox::{Action, Outbox};
 use super::overlay;
 use super::paint::ScenePaint;
@@ -74,12 +76,24 @@ pub(super) struct Viewport {
     drag: Drag,
     hot: Hot,
     builder: SceneBuilder,
+    mesh: MeshScene,
+}
+
+/// What there is to be seen.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sources<'a> {
+    pub(super) session: &'a Session,
+    /// The cage.
+    pub(super) pose: Option<&'a Pose>,
+    /// The mesh, which is shown instead of antenna and cage.
+    pub(super) mesh: Option<&'a ShownMesh>,
 }
 
 /// What a frame of the view works with.
 struct Frame<'a> {
     session: &'a Session,
     pose: Option<&'a Pose>,
+    mesh: Option<&'a ShownMesh>,
     /// Handles in picture units.
     handles: &'a [Vec3],
     gizmo: Option<Gizmo>,
@@ -106,14 +120,10 @@ impl Frame<'_> {
 
 impl Viewport {
     /// Draws the view and turns what the pointer does into wishes.
-    pub(super) fn ui(
-        &mut self,
-        ui: &mut Ui,
-        session: &Session,
-        pose: Option<&Pose>,
-        state: &mut UiState,
-        out: &mut Outbox,
-    ) {
+    pub(super) fn ui(&mut self, ui: &mut Ui, sources: Sources<'_>, state: &mut UiState, out: &mut Outbox) {
+        let Sources { session, mesh, .. } = sources;
+        // The cage is neither seen nor grabbed while the mesh is shown.
+        let pose = sources.pose.filter(|_| mesh.is_none());
         let rect = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(rect, Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "3-D view"));
@@ -123,7 +133,7 @@ impl Viewport {
         };
         state.selection.retain(|&v| pose.is_none_or(|p| (v as usize) < p.cage.n_handles()));
         let gizmo = gizmo(&handles, state, Tokens::here(ui), self.hot);
-        let frame = Frame { session, pose, handles: &handles, gizmo, rect };
+        let frame = Frame { session, pose, mesh, handles: &handles, gizmo, rect };
         if std::mem::take(&mut state.fit) {
             self.fit(ui, &frame, state);
         }
@@ -142,14 +152,27 @@ impl Viewport {
     }
 
     fn fit(&mut self, ui: &Ui, frame: &Frame<'_>, state: &mut UiState) {
-        let scene = self.builder.scene(frame.session, frame.pose, state, Tokens::here(ui), self.hot);
-        let surfaces = scene.surfaces.iter().flat_map(|s| s.positions.iter());
-        let start = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-        let around = surfaces.chain(frame.handles).fold(start, |(lo, hi), &p| (lo.min(p), hi.max(p)));
+        let (lo, hi) = match frame.mesh {
+            Some(mesh) => self.mesh.bounds(mesh, &state.mesh),
+            None => {
+                let scene = self.scene(ui, frame, state);
+                let surfaces = scene.surfaces.iter().flat_map(|s| s.positions.iter());
+                let start = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+                surfaces.chain(frame.handles).fold(start, |(lo, hi), &p| (lo.min(p), hi.max(p)))
+            }
+        };
         let mut view = frame.view(ui, state);
-        view.fit(around.0, around.1);
+        view.fit(lo, hi);
         view.camera.distance *= FIT_ROOM;
         state.camera = view.camera;
+    }
+
+    fn scene(&mut self, ui: &Ui, frame: &Frame<'_>, state: &UiState) -> Scene {
+        let tokens = Tokens::here(ui);
+        match frame.mesh {
+            Some(mesh) => self.mesh.scene(mesh, &state.mesh, tokens),
+            None => self.builder.scene(frame.session, frame.pose, state, tokens, self.hot),
+        }
     }
 
     fn hover(&mut self, ui: &Ui, response: &Response, frame: &Frame<'_>, state: &UiState) {
@@ -273,9 +296,8 @@ impl Viewport {
     }
 
     fn draw(&mut self, ui: &Ui, frame: &Frame<'_>, state: &UiState) -> Scene {
-        let tokens = Tokens::here(ui);
-        let scene = self.builder.scene(frame.session, frame.pose, state, tokens, self.hot);
-        ui.painter().rect_filled(frame.rect, 0.0, tokens.viewport);
+        let scene = self.scene(ui, frame, state);
+        ui.painter().rect_filled(frame.rect, 0.0, Tokens::here(ui).viewport);
         let paint = ScenePaint { scene: scene.clone(), view: frame.view(ui, state) };
         ui.painter().add(egui_wgpu::Callback::new_paint_callback(frame.rect, paint));
         scene
@@ -284,8 +306,12 @@ impl Viewport {
     fn overlay(&self, ui: &Ui, response: &Response, frame: &Frame<'_>, state: &UiState, scene: &Scene) {
         let view = frame.view(ui, state);
         name_vertices(ui, response, frame, state, &view);
-        let range = self.builder.range(state);
+        let range = self.builder.range(state).filter(|_| frame.mesh.is_none());
         overlay::draw(ui, frame.rect, &view, state, range);
+        if let Some(mesh) = frame.mesh {
+            let is_stale = mesh.is_stale(frame.session.project());
+            overlay::mesh(ui, frame.rect, self.mesh.looks(), state.mesh.paint, is_stale);
+        }
         match &self.drag {
             Drag::Box { from } => {
                 if let Some(to) = response.interact_pointer_pos() {
@@ -301,7 +327,7 @@ impl Viewport {
                 let hovered = self.hot.vertex.filter(|_| pointer.is_some());
                 if let (Some(vertex), Some(pose)) = (hovered, frame.pose) {
                     overlay::vertex_hint(ui, frame.rect, vertex, pose);
-                } else if let (Some(at), Some(surface)) = (pointer, scene.surfaces.first()) {
+                } else if let (Some(at), Some(surface), None) = (pointer, scene.surfaces.first(), frame.mesh) {
                     overlay::value_hint(ui, &view, surface, at, frame.local(at), state);
                 }
             }

@@ -7,12 +7,13 @@
 //! [`deform`] does the whole job once. The window asks a [`Worker`](worker::Worker) instead, which answers the newest
 //! request only and, while the user drags, moves the last surface's vertices through the new pose without splitting or
 //! compensating anew ([`live`]). Where a pose is refused, [`retreat()`] finds the furthest valid project on the way to
-//! it.
+//! it. A [`MeshJob`](mesh_job::MeshJob) fills antenna and air with tetrahedra beside all that.
 
 mod error;
 mod fields;
 pub mod live;
 mod mesh;
+pub mod mesh_job;
 mod retreat;
 mod scene;
 mod solve;

@@ -23,6 +23,7 @@
 
 pub mod block;
 mod classify;
+pub mod cutaway;
 mod delaunay;
 mod enclose;
 mod error;
@@ -41,6 +42,7 @@ mod store;
 mod surface;
 
 pub use block::{Block, BlockError, BlockFault, BlockSettings, Metal};
+pub use cutaway::{CutFace, Cutaway};
 pub use enclose::{AirSettings, EncloseError, Enclosed, enclose};
 pub use error::TetError;
 pub use fill::{Filled, fill};
