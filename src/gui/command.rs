@@ -188,6 +188,8 @@ impl Command {
             Self::ResetAll => facts.has_hand_edits,
             Self::CompensateNot => facts.compensates,
             Self::ExportMesh | Self::ShowMesh => facts.has_mesh,
+            // There is no cage in the view of the mesh.
+            Self::BoxSelect | Self::ShowCage | Self::SeeThrough => !facts.shows_mesh,
             _ => true,
         }
     }

@@ -17,6 +17,10 @@ use egui::Color32;
 /// Ends of the scale of angles, degrees: the regular cell has 70.5, good meshes have few cells above 60.
 pub(super) const ANGLE_RANGE: [f32; 2] = [0.0, 60.0];
 
+/// The air is a ball, which fills less of the view than the box around it: a box this much smaller does as much. The
+/// box inside the ball would be 0.58 as large; a little more leaves room for the crinkled edge.
+const BALL_IN_BOX: f32 = 0.62;
+
 /// What a face looks like.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Look {
@@ -152,7 +156,7 @@ impl MeshScene {
         }
         let [r, g, b, _] = rgba(tokens.mesh_edge);
         let edges = shown.edges.clone();
-        scene.lines.push(Lines { positions: positions.clone(), edges, color: [r, g, b, 150], width: 0.8, hidden: 0.0 });
+        scene.lines.push(Lines { positions: positions.clone(), edges, color: [r, g, b, 120], width: 0.8, hidden: 0.0 });
         if ui.marks_worst {
             let marks = self.marks(mesh, ui);
             let color = rgba(tokens.signal);
@@ -173,9 +177,12 @@ impl MeshScene {
         scene
     }
 
-    /// Lowest and highest corner of what is shown, mm.
+    /// Lowest and highest corner of the box to be brought into view, mm.
     pub(super) fn bounds(&mut self, mesh: &ShownMesh, ui: &MeshUi) -> (Vec3, Vec3) {
-        self.shown(mesh, ui).bounds
+        let (lo, hi) = self.shown(mesh, ui).bounds;
+        let (center, half) = ((lo + hi) / 2.0, (hi - lo) / 2.0);
+        let part = if ui.shows_air { BALL_IN_BOX } else { 1.0 };
+        (center - part * half, center + part * half)
     }
 
     /// The looks that are to be seen, for the legend.

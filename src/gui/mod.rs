@@ -37,6 +37,8 @@ mod session;
 mod status;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_mesh;
 mod theme;
 mod ui_state;
 mod viewport;

@@ -22,12 +22,25 @@ fn font() -> FontId {
     FontId::proportional(12.0)
 }
 
+/// A ground that lettering stays readable on where it lies over a picture; on empty ground it is not seen.
+fn ground(painter: &Painter, area: Rect, tokens: &Tokens) {
+    painter.rect_filled(area.expand(4.0), 4.0, tokens.viewport.gamma_multiply(0.8));
+}
+
+/// A line of text with the ground it needs.
+fn lettering(painter: &Painter, at: Pos2, anchor: Align2, text: impl Into<String>, color: Color32, tokens: &Tokens) {
+    let galley = painter.layout_no_wrap(text.into(), font(), color);
+    let area = anchor.anchor_size(at, galley.size());
+    ground(painter, area, tokens);
+    painter.galley(area.min, galley, color);
+}
+
 /// Draws what is always there, and the colour bar if `range` (percent) says that something is painted on the antenna.
 pub(super) fn draw(ui: &Ui, rect: Rect, view: &View, state: &UiState, range: Option<f32>) {
     let painter = ui.painter().with_clip_rect(rect);
     let tokens = Tokens::here(ui);
     let place = rect.min + vec2(MARGIN, MARGIN - 2.0);
-    painter.text(place, Align2::LEFT_TOP, view_name(view), font(), tokens.weak);
+    lettering(&painter, place, Align2::LEFT_TOP, view_name(view), tokens.weak, tokens);
     axes(&painter, rect, view, tokens);
     scale_bar(&painter, rect, view, tokens);
     if let Some(range) = range {
@@ -48,7 +61,7 @@ pub(super) fn mesh(ui: &Ui, rect: Rect, looks: impl Iterator<Item = Look>, paint
     if is_stale {
         let place = rect.min + vec2(MARGIN, MARGIN + 16.0);
         let text = "⚠ Out of date: the geometry has changed since";
-        painter.text(place, Align2::LEFT_TOP, text, font(), tokens.warning);
+        lettering(&painter, place, Align2::LEFT_TOP, text, tokens.warning, tokens);
     }
     let mut top = 0.0;
     if paint == MeshPaint::Angle {
@@ -87,6 +100,7 @@ fn axes(painter: &Painter, rect: Rect, view: &View, tokens: &Tokens) {
             (axis.dot(back), vec2(axis.dot(right), -axis.dot(up)) * 26.0, i)
         })
         .collect();
+    painter.circle_filled(center, 42.0, tokens.viewport.gamma_multiply(0.6));
     arrows.sort_by(|a, b| a.0.total_cmp(&b.0));
     for (_, along, i) in arrows {
         let color = tokens.axes[i];
@@ -104,6 +118,7 @@ fn scale_bar(painter: &Painter, rect: Rect, view: &View, tokens: &Tokens) {
     let right = pos2(rect.right() - MARGIN, rect.bottom() - MARGIN - 4.0);
     let left = right - vec2(width, 0.0);
     let stroke = Stroke::new(1.5, tokens.text);
+    ground(painter, Rect::from_min_max(left - vec2(0.0, 18.0), right + vec2(0.0, 4.0)), tokens);
     painter.line_segment([left, right], stroke);
     for end in [left, right] {
         painter.line_segment([end - vec2(0.0, 4.0), end + vec2(0.0, 4.0)], stroke);
@@ -127,6 +142,9 @@ impl ColorBar<'_> {
         let height = (rect.height() * 0.4).clamp(80.0, 240.0);
         let top = pos2(rect.right() - MARGIN - 60.0, rect.top() + MARGIN + 22.0);
         let bar = Rect::from_min_size(top, vec2(14.0, height));
+        let title = pos2(rect.right() - MARGIN, rect.top() + MARGIN - 2.0);
+        lettering(painter, title, Align2::RIGHT_TOP, self.title, tokens.text, tokens);
+        ground(painter, Rect::from_min_max(bar.min - vec2(2.0, 4.0), bar.max + vec2(62.0, 4.0)), tokens);
         let mut mesh = egui::Mesh::default();
         const STEPS: u32 = 64;
         for k in 0..=STEPS {
@@ -147,8 +165,6 @@ impl ColorBar<'_> {
             painter.line_segment([pos2(bar.right(), y), pos2(bar.right() + 4.0, y)], Stroke::new(1.0, tokens.text));
             painter.text(pos2(bar.right() + 7.0, y), Align2::LEFT_CENTER, text, font(), tokens.text);
         }
-        let title = pos2(rect.right() - MARGIN, rect.top() + MARGIN - 2.0);
-        painter.text(title, Align2::RIGHT_TOP, self.title, font(), tokens.text);
     }
 }
 
@@ -164,6 +180,11 @@ pub(super) fn legend<'a>(
         entries.map(|(n, color)| (painter.layout_no_wrap(n.to_owned(), font(), tokens.text), color)).collect();
     let width = lines.iter().map(|(text, _)| text.size().x).fold(0.0, f32::max);
     let left = rect.right() - MARGIN - width;
+    let first = pos2(left - 20.0, rect.top() + MARGIN - 1.0 + top);
+    if !lines.is_empty() {
+        let last = pos2(rect.right() - MARGIN, first.y + 19.0 * lines.len() as f32 - 4.0);
+        ground(painter, Rect::from_min_max(first, last), tokens);
+    }
     for (k, (text, color)) in lines.into_iter().enumerate() {
         let middle = rect.top() + MARGIN + 6.0 + top + 19.0 * k as f32;
         let field = Rect::from_center_size(pos2(left - 14.0, middle), vec2(13.0, 13.0));

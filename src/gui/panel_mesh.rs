@@ -263,11 +263,13 @@ fn histogram(ui: &mut Ui, cells: &CellStatistics) {
 fn worst(ui: &mut Ui, shown: &ShownMesh, state: &mut UiState) {
     let weak = Tokens::here(ui).weak;
     let cells = &shown.ready.meshed.quality.worst;
+    ui.spacing_mut().button_padding = egui::vec2(4.0, 1.0);
+    ui.spacing_mut().interact_size.y = ROW_HEIGHT;
     Grid::new("worst cells").num_columns(3).striped(true).spacing([10.0, 2.0]).min_row_height(ROW_HEIGHT).show(
         ui,
         |ui| {
-            ui.label(RichText::new("Center (mm)").color(weak)).on_hover_text("x, y and z; press one to look at it");
-            ui.label(RichText::new("Inradius").color(weak)).on_hover_text("Radius of the inscribed sphere, mm");
+            ui.label(RichText::new(" Center (mm)").color(weak)).on_hover_text("x, y and z; press one to look at it");
+            ui.label(RichText::new("Inradius (mm)").color(weak)).on_hover_text("Radius of the inscribed sphere");
             ui.label(RichText::new("Angles (°)").color(weak)).on_hover_text("Smallest and largest dihedral angle");
             ui.end_row();
             for (index, cell) in cells.iter().enumerate() {

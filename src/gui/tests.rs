@@ -11,9 +11,9 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use std::time::{Duration, Instant};
 
-type Window = Harness<'static, App>;
+pub(super) type Window = Harness<'static, App>;
 
-fn window() -> Window {
+pub(super) fn window() -> Window {
     let builder = Harness::builder().with_size((1280.0, 800.0)).with_theme(Theme::Dark);
     let mut window = builder.build_eframe(|cc| App::new(cc, None));
     settle(&mut window);
@@ -21,7 +21,7 @@ fn window() -> Window {
 }
 
 /// Steps until the worker has answered; generous, because machines are slow and busy.
-fn settle(window: &mut Window) {
+pub(super) fn settle(window: &mut Window) {
     let start = Instant::now();
     window.step();
     while window.state().session.is_busy() {
@@ -32,7 +32,7 @@ fn settle(window: &mut Window) {
     window.step();
 }
 
-fn project(window: &Window) -> Project {
+pub(super) fn project(window: &Window) -> Project {
     window.state().session.project().clone()
 }
 
@@ -351,7 +351,7 @@ fn an_export_is_certified_and_verified() {
     wait_for(&mut window, "Verified: every claim of the certificate holds");
 }
 
-fn wait_for(window: &mut Window, label: &str) {
+pub(super) fn wait_for(window: &mut Window, label: &str) {
     let start = Instant::now();
     while window.query_by_label(label).is_none() {
         assert!(start.elapsed() < Duration::from_secs(300), "\"{label}\" does not appear");
@@ -362,7 +362,7 @@ fn wait_for(window: &mut Window, label: &str) {
 }
 
 /// Lets a dialog find its size and its place, which depend on each other.
-fn lay_out(window: &mut Window) {
+pub(super) fn lay_out(window: &mut Window) {
     window.run_steps(4);
 }
 

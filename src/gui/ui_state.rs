@@ -103,7 +103,7 @@ impl Default for MeshUi {
             axis: 1,
             place_mm: 0.0,
             flipped: false,
-            cuts_antenna: true,
+            cuts_antenna: false,
             shows_air: true,
             paint: MeshPaint::default(),
             marks_worst: true,
