@@ -117,6 +117,7 @@ fn what_cannot_be_meshed_is_explained_and_the_old_mesh_stays() {
     window.get_by_label_contains("No mesh was made: there is no exact cylinder");
     assert_eq!(window.state().mesh.shown().map(|s| s.serial), Some(before), "the old one is still there");
     run(&mut window, Command::New);
+    lay_out(&mut window);
     window.get_by_label("Discard changes").click();
     window.run_steps(2);
     assert!(window.state().mesh.shown().is_none() && !window.state().state.mesh.shows, "another project has none");
@@ -125,7 +126,8 @@ fn what_cannot_be_meshed_is_explained_and_the_old_mesh_stays() {
 #[test]
 fn a_worst_cell_is_brought_before_the_eye() {
     let mut window = meshed();
-    window.get_by_label("Worst cell 2").click();
+    // The list is below the part of the panel that is in view.
+    window.get_by_label("Worst cell 2").click_accesskit();
     window.run_steps(2);
     let (app, shown) = (window.state(), window.state().mesh.shown().expect("a mesh"));
     let cell = &shown.ready.meshed.quality.worst[1];
@@ -187,7 +189,7 @@ fn each_format_is_written_whole_with_its_head() {
         window.state_mut().session.path = Some(folder.path().join("bent.json"));
         run(&mut window, Command::ExportMesh);
         lay_out(&mut window);
-        window.get_by_label("Export mesh");
+        window.get_by_label("Format");
         window.get_by_label(format).click();
         lay_out(&mut window);
         window.get_all_by_label("Export").last().expect("the button of the dialog").click();
@@ -205,7 +207,7 @@ fn each_format_is_written_whole_with_its_head() {
         let left = std::fs::read_dir(folder.path()).expect("the folder").count();
         assert!(left <= 3, "{format}: no temporary file is left");
         window.step();
-        assert!(window.query_by_label("Export mesh").is_none(), "the dialog is closed");
+        assert!(window.query_by_label("Format").is_none(), "the dialog is closed");
     }
 }
 
