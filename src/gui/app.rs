@@ -161,7 +161,7 @@ impl App {
             ui.add_space(4.0);
             ui.horizontal(|ui| {
                 let tip = "Distortion of the deformed antenna and its compensation";
-                ui.selectable_value(&mut self.state.right_tab, RightTab::Figures, "Shape").on_hover_text(tip);
+                ui.selectable_value(&mut self.state.right_tab, RightTab::Figures, "Deformation").on_hover_text(tip);
                 let tip = "The tetrahedral mesh of the antenna and the air around it";
                 ui.selectable_value(&mut self.state.right_tab, RightTab::Mesh, "Mesh").on_hover_text(tip);
             });
@@ -305,6 +305,9 @@ impl App {
             None => {}
             Some(MeshNews::Made(text)) => {
                 self.state.mesh.chosen = None;
+                if let Some(mesh) = self.mesh.shown() {
+                    self.state.mesh.keep_within(&mesh.bounds_mm);
+                }
                 self.state.show_mesh(true);
                 self.messages.say(Weight::Good, &text);
             }

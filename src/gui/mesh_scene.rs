@@ -187,7 +187,9 @@ impl MeshScene {
 
     /// The looks that are to be seen, for the legend.
     pub(super) fn looks(&self) -> impl Iterator<Item = Look> {
-        self.shown.iter().flat_map(|(_, shown)| shown.parts.iter().map(|(look, _)| *look))
+        let shown = self.shown.iter().flat_map(|(_, shown)| shown.parts.iter().map(|(look, _)| *look));
+        let marked = self.shown.iter().filter(|(key, _)| key.marks_worst).map(|_| Look::Worst);
+        shown.filter(|look| *look != Look::Worst).chain(marked)
     }
 
     fn positions(&mut self, mesh: &ShownMesh) -> Array<Vec3> {

@@ -16,6 +16,8 @@ use egui_plot::{AxisHints, Bar, BarChart, Plot};
 
 /// Height of the histogram, points.
 const PLOT_HEIGHT: f32 = 130.0;
+/// Labels of the axes fade in between these distances, points.
+const LABEL_SPACING: egui::Rangef = egui::Rangef { min: 10.0, max: 14.0 };
 /// Distance of the eye over the longest edge of the cell that it is shown: some rings of neighbors are seen, too.
 const EYE_DISTANCE: f64 = 18.0;
 
@@ -153,8 +155,7 @@ fn look(ui: &mut Ui, shown: &ShownMesh, facts: &Facts, state: &mut UiState, out:
                 for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
                     let tip = format!("A plane of constant {name}");
                     if ui.selectable_value(&mut view.axis, axis, name).on_hover_text(tip).clicked() {
-                        let [lo, hi] = shown.bounds_mm[axis];
-                        view.place_mm = view.place_mm.clamp(lo, hi);
+                        view.keep_within(&shown.bounds_mm);
                     }
                 }
                 ui.checkbox(&mut view.flipped, "Flip").on_hover_text("Keep the other side");
@@ -238,7 +239,6 @@ fn histogram(ui: &mut Ui, cells: &CellStatistics) {
     let chart = BarChart::new("cells", bars)
         .color(accent)
         .element_formatter(Box::new(|bar, _| format!("{}\n{} cells", bar.name, grouped(bar.value as usize))));
-    let spacing = egui::Rangef { min: 20.0, max: 30.0 };
     let angles = AxisHints::new_x().label("Angle (°)").formatter(|mark, _| format!("{:.0}", mark.value));
     let counts = AxisHints::new_y().label("Cells").formatter(|mark, _| grouped(mark.value.max(0.0) as usize));
     Plot::new("angles")
@@ -253,8 +253,8 @@ fn histogram(ui: &mut Ui, cells: &CellStatistics) {
         .x_grid_spacer(|_| {
             (0..=5u8).map(|k| egui_plot::GridMark { value: 15.0 * f64::from(k), step_size: 15.0 }).collect()
         })
-        .custom_x_axes(vec![angles.label_spacing(spacing)])
-        .custom_y_axes(vec![counts.label_spacing(spacing)])
+        .custom_x_axes(vec![angles.label_spacing(LABEL_SPACING)])
+        .custom_y_axes(vec![counts.label_spacing(LABEL_SPACING)])
         .show_x(false)
         .show_y(false)
         .show(ui, |plot| plot.bar_chart(chart));

@@ -113,6 +113,14 @@ impl Default for MeshUi {
     }
 }
 
+impl MeshUi {
+    /// Keeps the place of the cut within the mesh: least and greatest coordinate along each axis, mm.
+    pub(super) fn keep_within(&mut self, bounds_mm: &[[f64; 2]; 3]) {
+        let [lo, hi] = bounds_mm[self.axis];
+        self.place_mm = self.place_mm.clamp(lo, hi);
+    }
+}
+
 /// The camera as it is kept between runs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct SavedCamera {
