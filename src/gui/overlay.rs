@@ -59,7 +59,7 @@ pub(super) fn mesh(ui: &Ui, rect: Rect, looks: impl Iterator<Item = Look>, paint
     let painter = ui.painter().with_clip_rect(rect);
     let tokens = Tokens::here(ui);
     if is_stale {
-        let place = rect.min + vec2(MARGIN, MARGIN + 16.0);
+        let place = rect.min + vec2(MARGIN, MARGIN + 20.0);
         let text = "⚠ Out of date: the geometry has changed since";
         lettering(&painter, place, Align2::LEFT_TOP, text, tokens.warning, tokens);
     }

@@ -232,16 +232,13 @@ fn histogram(ui: &mut Ui, cells: &CellStatistics) {
     let width = BIN_WIDTH.to_degrees();
     let accent = Tokens::here(ui).accent;
     let bar = |(k, &count): (usize, &usize)| {
-        let name = format!("{:.0}° to {:.0}°", k as f64 * width, (k + 1) as f64 * width);
-        Bar::new((k as f64 + 0.5) * width, count as f64).width(0.88 * width).fill(accent).name(name)
+        Bar::new((k as f64 + 0.5) * width, count as f64).width(0.88 * width).fill(accent)
     };
     let bars: Vec<Bar> = cells.histogram.iter().enumerate().map(bar).collect();
-    let chart = BarChart::new("cells", bars)
-        .color(accent)
-        .element_formatter(Box::new(|bar, _| format!("{}\n{} cells", bar.name, grouped(bar.value as usize))));
     let angles = AxisHints::new_x().label("Angle (°)").formatter(|mark, _| format!("{:.0}", mark.value));
     let counts = AxisHints::new_y().label("Cells").formatter(|mark, _| grouped(mark.value.max(0.0) as usize));
-    Plot::new("angles")
+    let every_15 = |k: u8| egui_plot::GridMark { value: 15.0 * f64::from(k), step_size: 15.0 };
+    let plot = Plot::new("angles")
         .height(PLOT_HEIGHT)
         .allow_scroll(false)
         .allow_zoom(false)
@@ -250,14 +247,18 @@ fn histogram(ui: &mut Ui, cells: &CellStatistics) {
         .include_x(0.0)
         .include_x(width * cells.histogram.len() as f64)
         .include_y(0.0)
-        .x_grid_spacer(|_| {
-            (0..=5u8).map(|k| egui_plot::GridMark { value: 15.0 * f64::from(k), step_size: 15.0 }).collect()
-        })
+        .x_grid_spacer(move |_| (0..=5).map(every_15).collect())
         .custom_x_axes(vec![angles.label_spacing(LABEL_SPACING)])
         .custom_y_axes(vec![counts.label_spacing(LABEL_SPACING)])
         .show_x(false)
         .show_y(false)
-        .show(ui, |plot| plot.bar_chart(chart));
+        .show(ui, |plot| plot.bar_chart(BarChart::new("cells", bars).color(accent)));
+    let Some(pointer) = plot.response.hover_pos() else { return };
+    let bin = (plot.transform.value_from_position(pointer).x / width).max(0.0) as usize;
+    if let Some(&count) = cells.histogram.get(bin) {
+        let [from, to] = [bin, bin + 1].map(|k| k as f64 * width);
+        plot.response.on_hover_text_at_pointer(format!("{from:.0}° to {to:.0}°: {} cells", grouped(count)));
+    }
 }
 
 fn worst(ui: &mut Ui, shown: &ShownMesh, state: &mut UiState) {
