@@ -8,6 +8,7 @@
 //! PatchParams -antenna-> Plc (flat) --cage--> Cage (rest) --deform--> GreenWeights --posed cage--> Plc (deformed)
 //!                                                |                                   |
 //!                                                '------------ distortion <----------' rho, strain, compensation
+//! PatchParams, compensated map -tet-> TetMesh -tlm-> Record -results-> Sweep (S11)
 //! ```
 //!
 //! Every arrow is a pure function over checked values; nothing below [`pipeline`] knows of threads (beyond rayon
