@@ -7,7 +7,7 @@
 //! Each cell is a node with a port per edge; a port's voltage is the line integral of the electric field along the
 //! edge. Scattering solves the cell's own circuit exactly; connecting makes all cells at an edge agree on its voltage.
 //! As the time step goes to zero this is the lowest-order Whitney finite element method; for every time step up to the
-//! largest one of the [`cell`] page it is stable, provably, cell by cell. Second order where the field is smooth.
+//! largest one that the cells allow it is stable, provably, cell by cell. Second order where the field is smooth.
 //!
 //! Fields vary as exp(+jωt). Lengths are metres; inside, c = ε0 = µ0 = 1, so times are lengths.
 //!
