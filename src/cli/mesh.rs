@@ -10,8 +10,8 @@ use crate::pipeline::{self, Density, MeshSettings};
 use crate::project::file;
 use crate::task::Task;
 use crate::tet::{
-    BIN_WIDTH, CellStatistics, QualityReport, RecoveryReport, RegionQuality, SizingSettings, TetMesh, WorstCell, fill,
-    quality, tet_qualities,
+    BIN_WIDTH, CellStatistics, QualityReport, RecoveryReport, RegionQuality, Sizing, SizingSettings, TetMesh,
+    WorstCell, fill, quality, tet_qualities,
 };
 use crate::units::to_mm;
 use anyhow::{Context, Result};
@@ -60,10 +60,11 @@ fn mesh_project(path: &Path, args: &MeshArgs, task: &Task) -> Result<Made> {
 fn mesh_surface(path: &Path, density: Density, task: &Task) -> Result<Made> {
     let surface = surface_json::read_surface(path)?;
     let started = Instant::now();
-    let filled = fill(&surface, &[], sizing(&surface.vertices, density), task)
-        .with_context(|| format!("meshing {}", path.display()))?;
+    let settings = sizing(&surface.vertices, density);
+    let wanted = Sizing::new(&surface, settings);
+    let filled = fill(&surface, &[], settings, task).with_context(|| format!("meshing {}", path.display()))?;
     Ok(Made {
-        quality: quality(&filled.mesh, None, N_WORST),
+        quality: quality(&filled.mesh, Some(&|p| wanted.at(p).size), N_WORST),
         mesh: filled.mesh,
         recovery: filled.recovery,
         map_distance: None,
@@ -132,6 +133,9 @@ struct Cells {
     inradius_1_percent_mm: f64,
     radius_ratio_min: f64,
     radius_ratio_mean: f64,
+    /// Edge lengths over the wanted ones, mean and 95th percentile.
+    edge_over_wanted_mean: Option<f64>,
+    edge_over_wanted_95_percent: Option<f64>,
 }
 
 #[derive(Debug, Serialize)]
@@ -164,6 +168,8 @@ impl From<&CellStatistics> for Cells {
             inradius_1_percent_mm: to_mm(c.inradius_p1),
             radius_ratio_min: c.radius_ratio_min,
             radius_ratio_mean: c.radius_ratio_mean,
+            edge_over_wanted_mean: c.edges.map(|e| e.mean),
+            edge_over_wanted_95_percent: c.edges.map(|e| e.p95),
         }
     }
 }
@@ -235,6 +241,12 @@ impl Report {
                 recovery.missing_edges, recovery.missing_facets, recovery.helper_points, recovery.halved_edges
             ),
         ];
+        let edges = self.whole.edge_over_wanted_mean.zip(self.whole.edge_over_wanted_95_percent);
+        lines.extend(
+            edges.map(|(mean, p95)| {
+                format!("edge lengths  {mean:.2} of the wanted ones in the mean, 95 % below {p95:.2}")
+            }),
+        );
         lines.extend(self.map_distance_mm.map(|d| format!("smooth map    edges within {d:.4} mm of it")));
         lines.push("smallest cells, which rule the time step:".to_owned());
         lines.extend(self.worst.iter().take(5).map(|w| {

@@ -66,6 +66,68 @@ mod tests {
         assert!(insphere(corners, DVec3::new(0.0, 0.0, -1.0 + f64::EPSILON)) > 0.0, "just inside");
     }
 
+    /// The published trap of plain floating point: points a few units of the last place from the line through
+    /// (12, 12) and (24, 24) \[KMP08\], against integer arithmetic.
+    #[test]
+    fn nearly_collinear_points_are_told_apart() {
+        let step = 2.0_f64.powi(-53);
+        let (q, r) = (DVec2::splat(12.0), DVec2::splat(24.0));
+        let whole = |x: i128| (1_i128 << 52) + x;
+        for (i, j) in (0..256_i128).flat_map(|i| (0..256).map(move |j| (i, j))) {
+            let p = DVec2::new(0.5 + i as f64 * step, 0.5 + j as f64 * step);
+            let scaled = |k: i128| k << 53;
+            let (px, py) = (whole(i), whole(j));
+            let exact = (scaled(12) - px) * (scaled(24) - py) - (scaled(12) - py) * (scaled(24) - px);
+            let found = orient2d(p, q, r);
+            assert_eq!(found > 0.0, exact > 0, "({i}, {j})");
+            assert_eq!(found < 0.0, exact < 0, "({i}, {j})");
+        }
+    }
+
+    /// The same in space: the third coordinate repeats the first, so the plane's sign is the line's.
+    #[test]
+    fn nearly_coplanar_points_are_told_apart_in_any_order() {
+        let step = 2.0_f64.powi(-53);
+        let lift = |p: DVec2| DVec3::new(p.x, p.y, p.x);
+        let (q, r, top) = (lift(DVec2::splat(12.0)), lift(DVec2::splat(24.0)), DVec3::new(18.0, 18.0, 30.0));
+        for (i, j) in (0..64).flat_map(|i| (0..64).map(move |j| (f64::from(i), f64::from(j)))) {
+            let p = DVec2::new(0.5 + i * step, 0.5 + j * step);
+            // All four but `top` are in the plane x = z, on one side of which it lies.
+            let plane = orient2d(p, DVec2::splat(12.0), DVec2::splat(24.0));
+            let found = orient3d(lift(p), q, r, top);
+            assert_eq!((found > 0.0, found < 0.0), (plane > 0.0, plane < 0.0), "({i}, {j})");
+            for (turned, sign) in [(orient3d(q, r, lift(p), top), 1.0), (orient3d(q, lift(p), r, top), -1.0)] {
+                assert_eq!((turned * sign > 0.0, turned * sign < 0.0), (found > 0.0, found < 0.0), "({i}, {j})");
+            }
+        }
+    }
+
+    /// Points with whole coordinates on spheres about the origin, moved far away and to a small scale.
+    #[test]
+    fn cospherical_points_give_exactly_zero_and_their_neighbors_a_sign() {
+        let on_sphere =
+            [(1, 2, 2), (2, -1, 2), (-2, 2, 1), (2, 2, -1), (-1, -2, 2), (3, 0, 0), (0, -3, 0), (-2, -1, -2)];
+        let shift = DVec3::new(1024.0, -512.0, 2048.0);
+        let place = |(x, y, z): (i32, i32, i32)| (DVec3::new(x.into(), y.into(), z.into()) + shift) * 2.0_f64.powi(-20);
+        let points = on_sphere.map(place);
+        let center = shift * 2.0_f64.powi(-20);
+        let mut corners = [points[0], points[1], points[2], points[3]];
+        if orient3d(corners[0], corners[1], corners[2], corners[3]) < 0.0 {
+            corners.swap(0, 1);
+        }
+        for &p in &points[4..] {
+            assert!(insphere(corners, p).abs() <= 0.0, "{p} is on the sphere");
+            let outwards = (p - center).abs().max_position();
+            let away = (p - center)[outwards] > 0.0;
+            for (neighbor, sign) in [(p[outwards].next_up(), 1.0), (p[outwards].next_down(), -1.0)] {
+                let mut moved = p;
+                moved[outwards] = neighbor;
+                let inside = insphere(corners, moved) * if away { -sign } else { sign };
+                assert!(inside > 0.0, "{p} moved by the last place");
+            }
+        }
+    }
+
     #[test]
     fn the_smallest_lift_is_seen() {
         let p = |x: f64, y: f64| DVec3::new(x, y, 0.1 * x + 0.3 * y);

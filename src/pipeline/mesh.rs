@@ -143,7 +143,7 @@ fn mesh_map(
     let (block, map_distance) = fine_block(params, carry, settings, tolerance, task)?;
     let enclosed = enclose(&block, &air(params, &block, settings), task)?;
     Ok(Meshed {
-        quality: quality(&enclosed.mesh, None, N_WORST),
+        quality: quality(&enclosed.mesh, Some(&|p| enclosed.sizing.at(p).size), N_WORST),
         mesh: enclosed.mesh,
         recovery: enclosed.recovery,
         map_distance,

@@ -9,7 +9,7 @@ use super::error::TetError;
 use super::fill::{Filled, fill};
 use super::mesh::{MarkedFace, Tet, TetMesh, face_key};
 use super::recover::{EdgeSplit, RecoveryReport};
-use super::sizing::SizingSettings;
+use super::sizing::{Sizing, SizingSettings};
 use super::sphere::sphere;
 use super::surface::{Surface, SurfaceFacet};
 use crate::geometry::{DVec3, Region, RegionId, RegionRole, VertexId};
@@ -48,12 +48,14 @@ pub enum EncloseError {
 }
 
 /// The mesh of an antenna in air.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Enclosed {
     /// The mesh.
     pub mesh: TetMesh,
     /// What it took to recover the antenna's skin.
     pub recovery: RecoveryReport,
+    /// The edge lengths that were wanted.
+    pub sizing: Sizing,
 }
 
 /// Meshes the air around a block and puts both together.
@@ -63,7 +65,8 @@ pub struct Enclosed {
 pub fn enclose(block: &Block, settings: &AirSettings, task: &Task) -> Result<Enclosed, EncloseError> {
     let hull = Hull::new(block, settings)?;
     let filled = fill(&hull.surface, &hull.inner, settings.sizing, task)?;
-    Ok(Enclosed { mesh: merge(block, &hull, &filled), recovery: filled.recovery })
+    let sizing = Sizing::new(&hull.surface, settings.sizing);
+    Ok(Enclosed { mesh: merge(block, &hull, &filled), recovery: filled.recovery, sizing })
 }
 
 /// The surface of the air, and which of its vertices is which of the block's.

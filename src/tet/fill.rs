@@ -147,3 +147,56 @@ fn extract(
         recovery,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::sphere::sphere;
+    use super::*;
+    use crate::geometry::{Region, RegionId};
+
+    /// A small ball off center in a large one.
+    fn balls() -> Surface {
+        let mut surface = Surface { vertices: Vec::new(), facets: Vec::new(), regions: Vec::new(), groups: Vec::new() };
+        for (r, (center, radius, edge)) in [(DVec3::ZERO, 5.0, 1.0), (DVec3::X, 2.0, 0.3)].into_iter().enumerate() {
+            let (points, faces) = sphere(center, radius, edge);
+            let first = surface.vertices.len();
+            surface.vertices.extend(points);
+            surface.facets.extend(faces.iter().map(|f| SurfaceFacet {
+                vertices: f.map(|v| VertexId::new(first + v)),
+                back: RegionId::new(r + 1),
+                front: RegionId::new(r),
+                group: None,
+            }));
+        }
+        surface.regions = ["outside", "shell", "core"]
+            .map(|n| Region { name: n.to_owned(), role: RegionRole::Dielectric, eps_r: 1.0, tan_delta: 0.0 })
+            .into();
+        surface
+    }
+
+    #[test]
+    fn the_mesh_is_whole_after_every_stage() {
+        let (surface, task) = (balls(), Task::default());
+        let sizing = Sizing::new(&surface, SizingSettings { h_max: 1.0, grading: 0.3 });
+        let mut points = surface.vertices.clone();
+        points.extend(seeds(&surface, &sizing, &task).expect("not cancelled"));
+        let mut mesh = triangulate(points, surface.vertices.len(), &task).expect("distinct points");
+        assert_eq!((mesh.check(), mesh.n_not_delaunay()), (Ok(()), 0), "triangulated");
+        let mut recovery = Recovery::new(&mut mesh, &surface.facets);
+        recovery.run(&task).expect("recovered");
+        let facets = recovery.facets;
+        assert_eq!(mesh.check(), Ok(()), "recovered");
+        raise_walls(&mut mesh, &facets).expect("all facets are faces");
+        classify(&mut mesh, &facets, &surface).expect("closed");
+        assert_eq!(mesh.check(), Ok(()), "classified");
+        let n_surface = surface.vertices.len();
+        let is_filled = [false, true, true];
+        Optimiser::new(&mut mesh, &is_filled, |v| v.index() < n_surface).run(&task).expect("not cancelled");
+        assert_eq!(mesh.check(), Ok(()), "optimised");
+        let filled = extract(&mesh, &surface, &facets, &is_filled, RecoveryReport::default());
+        let volumes = (filled.mesh.volumes(), surface.volumes());
+        for r in [1, 2] {
+            assert!((volumes.0[r] / volumes.1[r] - 1.0).abs() < 1e-12, "region {r}: {volumes:?}");
+        }
+    }
+}
