@@ -424,3 +424,23 @@ fn mesh_fills_a_surface_complex_and_refuses_what_is_none() {
     bench.fails("mesh a.json --surface b.json", 2, "cannot be used with");
     bench.fails("mesh", 2, "required");
 }
+
+#[test]
+fn solve_finds_the_flat_antennas_resonance_and_writes_s11() {
+    let bench = Bench::new();
+    bench.ok("new a.json");
+    let report = bench.json("solve a.json --shape flat --density coarse --band 7 14 --out s --json");
+    // An independent solver has 10.79 GHz; the coarse density's singular edges cost 7 %.
+    let resonance = report["resonance_ghz"].as_f64().unwrap();
+    assert!((9.9..10.2).contains(&resonance), "{report}");
+    let bandwidth = report["bandwidth_10_db_mhz"].as_f64().unwrap();
+    assert!((700.0..850.0).contains(&bandwidth), "{report}");
+    let impedance = report["port_impedance_ohm"].as_f64().unwrap();
+    assert!((impedance / 50.13 - 1.0).abs() < 0.02, "{report}");
+    let touchstone = fs::read_to_string(bench.path("s/s11.s1p")).unwrap();
+    assert!(touchstone.contains("# GHz S RI R 50") && touchstone.lines().count() > 1400, "{touchstone:.200}");
+    for file in ["s11.csv", "s11_plot.svg", "s11_plot.png", "s11_plot.csv"] {
+        assert!(bench.path("s").join(file).exists(), "{file}");
+    }
+    bench.fails("solve a.json --band 14 7", 1, "both must be positive");
+}

@@ -93,7 +93,7 @@ fn a_matched_end_reflects_nothing_and_the_impedance_is_the_lines() {
     let mut found = Vec::new();
     for (n, layers) in [(16, 2), (40, 5)] {
         let mesh = line(n, layers, 3 * layers, FaceRole::Outer);
-        let (sweep, impedance) = reflection(&mesh, 0.0, StepLimit::Exact);
+        let (sweep, impedance) = reflection(&mesh, 0.0, StepLimit::Clip(0.003));
         let worst = sweep.s11.iter().map(|s| s.norm()).fold(0.0, f64::max);
         let error = impedance / exact_impedance() - 1.0;
         println!("{} tetrahedra: |S11| {worst:.5}, impedance {error:+.5}", mesh.tets.len());

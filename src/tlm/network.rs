@@ -10,7 +10,7 @@ use crate::geometry::{DVec3, VertexId};
 use crate::task::Task;
 use crate::tet::{FaceRole, TetMesh, face_key};
 use crate::units::{C0, ETA0};
-use nalgebra::Matrix6;
+use nalgebra::{Matrix3, Matrix6};
 use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
 use std::f64::consts::TAU;
@@ -166,6 +166,67 @@ impl<'a> Prepared<'a> {
         let points = corners.map(|v| self.mesh.vertices[v.index()]);
         Cell::new(points, self.mesh.regions[self.region(tet)].eps_r, self.free(corners, tet))
     }
+
+    /// What boundary faces add to a cell: conductances of its ports, and how the port drives and reads them.
+    fn boundary_terms(&self, corners: [VertexId; 4], tet: usize) -> (Matrix6<f64>, [f64; 6], [f64; 6]) {
+        let (mut conductance, mut source, mut observation) = (Matrix6::zeros(), [0.0; 6], [0.0; 6]);
+        let port = &self.faces.port;
+        for (places, face) in faces_of(corners) {
+            let mut add = |matrix: &Matrix3<f64>| {
+                for (a, b) in (0..3).flat_map(|a| (0..3).map(move |b| (a, b))) {
+                    conductance[(places[a], places[b])] += matrix[(a, b)];
+                }
+            };
+            if self.faces.outer.contains(&face) {
+                let (mass, ..) = face_mass(face.map(|v| self.mesh.vertices[v.index()]));
+                add(&(mass * self.mesh.regions[self.region(tet)].eps_r.sqrt()));
+            } else if let Some(&f) = self.faces.port_faces.get(&face)
+                && self.region(tet) == self.faces.port_region
+            {
+                add(&port.faces[f].conductance);
+                for (a, &place) in places.iter().enumerate() {
+                    source[place] += 2.0 * port.faces[f].mode[a];
+                    observation[place] += port.faces[f].mode[a] / port.admittance;
+                }
+            }
+        }
+        (conductance, source, observation)
+    }
+
+    /// The numbers of a cell's lane: coefficients, and terms of boundary faces where its block has such.
+    #[allow(clippy::cast_possible_truncation, reason = "the field runs in single precision")]
+    fn terms(&self, k: usize, x: f64, loss_freq: f64, at_boundary: bool) -> ([f32; 34], [f32; 33]) {
+        let (corners, tet) = self.cells[k];
+        let cell = self.cell(k);
+        // Conductivity over permittivity, as a share of C/x.
+        let kappa = TAU * loss_freq / C0 * self.mesh.regions[self.region(tet)].tan_delta * x;
+        let mut loss = cell.capacitance * (kappa / x);
+        let (mut coefficients, mut terms) = ([0.0; 34], [0.0; 33]);
+        let (faces, source, observation) = self.boundary_terms(corners, tet);
+        if at_boundary {
+            loss += faces;
+        } else {
+            coefficients[LOSS] = (kappa / (1.0 + kappa)) as f32;
+        }
+        let c = cell.coefficients(x, &loss);
+        for a in 0..6 {
+            coefficients[ADMITTANCE + a] = c.y[a] as f32;
+            for b in 0..=a {
+                coefficients[triangle(a, b)] = c.d[(a, b)] as f32;
+                if at_boundary && c.y[a] > 0.0 && c.y[b] > 0.0 {
+                    terms[triangle(a, b)] = loss[(a, b)] as f32;
+                }
+            }
+            if at_boundary && c.y[a] > 0.0 {
+                terms[SOURCE + a] = source[a] as f32;
+                terms[OBSERVATION + a] = observation[a] as f32;
+            }
+        }
+        for (i, j) in (0..3).flat_map(|i| (0..=i).map(move |j| (i, j))) {
+            coefficients[A_INVERSE + triangle(i, j)] = c.a_inverse[(i, j)] as f32;
+        }
+        (coefficients, terms)
+    }
 }
 
 fn ascending(mut corners: [VertexId; 4]) -> [VertexId; 4] {
@@ -285,18 +346,20 @@ impl Slots {
     }
 
     fn fill(&self, prepared: &Prepared<'_>, x: f64, loss_freq: f64) -> (Vec<Block>, Vec<Boundary>) {
-        let blocks =
-            self.cells.par_chunks(LANES).zip(self.edges.par_chunks(LANES)).enumerate().map(|(b, (cells, edges))| {
-                let mut block = Block { coefficients: [[0.0; LANES]; 34], edges: [[0; LANES]; 6] };
-                let mut boundary = Boundary { terms: [[0.0; LANES]; 33] };
-                for (w, (cell, ports)) in cells.iter().zip(edges).enumerate() {
-                    (0..6).for_each(|e| block.edges[e][w] = ports[e]);
-                    if let Some(k) = *cell {
-                        fill_lane(prepared, k, x, loss_freq, b >= self.n_inner_blocks, w, &mut block, &mut boundary);
-                    }
+        let lanes = self.cells.par_chunks(LANES).zip(self.edges.par_chunks(LANES)).enumerate();
+        let blocks = lanes.map(|(b, (cells, edges))| {
+            let mut block = Block { coefficients: [[0.0; LANES]; 34], edges: [[0; LANES]; 6] };
+            let mut boundary = Boundary { terms: [[0.0; LANES]; 33] };
+            for (w, (cell, ports)) in cells.iter().zip(edges).enumerate() {
+                (0..6).for_each(|e| block.edges[e][w] = ports[e]);
+                if let Some(k) = *cell {
+                    let (coefficients, terms) = prepared.terms(k, x, loss_freq, b >= self.n_inner_blocks);
+                    block.coefficients.iter_mut().zip(coefficients).for_each(|(lane, value)| lane[w] = value);
+                    boundary.terms.iter_mut().zip(terms).for_each(|(lane, value)| lane[w] = value);
                 }
-                (block, boundary)
-            });
+            }
+            (block, boundary)
+        });
         let all: Vec<(Block, Boundary)> = blocks.collect();
         let boundary = all[self.n_inner_blocks..].iter().map(|(_, boundary)| boundary.clone()).collect();
         (all.into_iter().map(|(block, _)| block).collect(), boundary)
@@ -323,69 +386,5 @@ impl Slots {
         #[allow(clippy::cast_possible_truncation, reason = "the field runs in single precision")]
         let weights = sums.iter().map(|s| (2.0 / s) as f32).collect();
         (starts, places, weights)
-    }
-}
-
-#[allow(clippy::too_many_arguments, clippy::cast_possible_truncation, reason = "the one place that fills a lane")]
-fn fill_lane(
-    prepared: &Prepared<'_>,
-    k: usize,
-    x: f64,
-    loss_freq: f64,
-    at_boundary: bool,
-    w: usize,
-    block: &mut Block,
-    boundary: &mut Boundary,
-) {
-    let (corners, tet) = prepared.cells[k];
-    let cell = prepared.cell(k);
-    let region = &prepared.mesh.regions[prepared.region(tet)];
-    // Conductivity over permittivity, as a share of C/x.
-    let kappa = TAU * loss_freq / C0 * region.tan_delta * x;
-    let mut loss = cell.capacitance * (kappa / x);
-    let (mut source, mut observation) = ([0.0; 6], [0.0; 6]);
-    if at_boundary {
-        let port = &prepared.faces.port;
-        for (places, face) in faces_of(corners) {
-            let mut add = |matrix: &nalgebra::Matrix3<f64>| {
-                for (a, b) in (0..3).flat_map(|a| (0..3).map(move |b| (a, b))) {
-                    loss[(places[a], places[b])] += matrix[(a, b)];
-                }
-            };
-            if prepared.faces.outer.contains(&face) {
-                add(&(face_mass(face.map(|v| prepared.mesh.vertices[v.index()])).0 * region.eps_r.sqrt()));
-            } else if let Some(&f) = prepared.faces.port_faces.get(&face)
-                && prepared.region(tet) == prepared.faces.port_region
-            {
-                add(&port.faces[f].conductance);
-                for (a, &place) in places.iter().enumerate() {
-                    source[place] += 2.0 * port.faces[f].mode[a];
-                    observation[place] += port.faces[f].mode[a] / port.admittance;
-                }
-            }
-        }
-    }
-    let c = cell.coefficients(x, &loss);
-    for a in 0..6 {
-        for b in 0..=a {
-            block.coefficients[triangle(a, b)][w] = c.d[(a, b)] as f32;
-        }
-        block.coefficients[ADMITTANCE + a][w] = c.y[a] as f32;
-    }
-    for (i, j) in (0..3).flat_map(|i| (0..=i).map(move |j| (i, j))) {
-        block.coefficients[A_INVERSE + triangle(i, j)][w] = c.a_inverse[(i, j)] as f32;
-    }
-    if at_boundary {
-        let used = Matrix6::from_fn(|a, b| if c.y[a] > 0.0 && c.y[b] > 0.0 { loss[(a, b)] } else { 0.0 });
-        for a in 0..6 {
-            for b in 0..=a {
-                boundary.terms[triangle(a, b)][w] = used[(a, b)] as f32;
-            }
-            let kept = f64::from(u8::from(c.y[a] > 0.0));
-            boundary.terms[SOURCE + a][w] = (kept * source[a]) as f32;
-            boundary.terms[OBSERVATION + a][w] = (kept * observation[a]) as f32;
-        }
-    } else {
-        block.coefficients[LOSS][w] = (kappa / (1.0 + kappa)) as f32;
     }
 }
