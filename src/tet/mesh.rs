@@ -1,6 +1,5 @@
 //! The tetrahedral mesh and its invariants.
 
-use super::Surface;
 use crate::geometry::predicates::orient3d;
 use crate::geometry::{DVec3, Region, RegionId, RegionRole, VertexId};
 use std::collections::HashMap;
@@ -191,15 +190,6 @@ impl TetMesh {
             return Err(MeshFault::Open { tet: *tet, at });
         }
         used.iter().position(|u| !u).map_or(Ok(()), |vertex| Err(MeshFault::LooseVertex { vertex }))
-    }
-
-    /// Counts the facets of a surface that the mesh has, of those that bound a meshed region; all of them in a valid
-    /// mesh of that surface. Vertices are recognised by their numbers: the surface's come first in the mesh.
-    #[must_use]
-    pub fn n_facets_present(&self, surface: &Surface) -> usize {
-        let faces: std::collections::HashSet<_> =
-            self.tets.iter().flat_map(|t| (0..4).map(|i| face_key(t.face(i)))).collect();
-        surface.facets.iter().filter(|f| faces.contains(&face_key(f.vertices))).count()
     }
 }
 

@@ -136,9 +136,10 @@ impl<'a> Recovery<'a> {
             if f.is_multiple_of(1024) {
                 task.check()?;
             }
-            if self.tet_with(&self.facets[f].vertices.clone()).is_none() {
+            let corners = self.facets[f].vertices;
+            if self.tet_with(&corners).is_none() {
                 n_missing += 1;
-                if !self.recover_facet(self.facets[f].vertices) {
+                if !self.recover_facet(corners) {
                     left.push(f);
                 }
             }

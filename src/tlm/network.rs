@@ -1,9 +1,7 @@
 //! From a mesh to the coefficients of all cells: fixed once built.
 
 use super::TlmError;
-use super::blocks::{
-    A_INVERSE, ADMITTANCE, Block, Boundary, LANES, LOSS, OBSERVATION, Reflected, SOURCE, State, triangle,
-};
+use super::blocks::{A_INVERSE, ADMITTANCE, Block, Boundary, LANES, LOSS, OBSERVATION, SOURCE, triangle};
 use super::cell::{Cell, EDGES, MARGIN, face_mass};
 use super::port::PortMode;
 use crate::geometry::{DVec3, VertexId};
@@ -277,14 +275,6 @@ impl Network {
             port_impedance: ETA0 / prepared.faces.port.admittance,
             n_clipped,
         })
-    }
-
-    /// Memory of coefficients and state, bytes.
-    #[must_use]
-    pub fn memory(&self) -> usize {
-        self.blocks.len() * (size_of::<Block>() + size_of::<State>() + size_of::<Reflected>())
-            + self.boundary.len() * size_of::<Boundary>()
-            + 4 * (self.starts.len() + self.places.len() + 2 * self.weights.len())
     }
 }
 

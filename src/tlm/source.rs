@@ -1,7 +1,6 @@
 //! The exciting pulse: a Gaussian that modulates the middle of the band.
 
 use super::TlmError;
-use crate::units::C0;
 use std::f64::consts::{LN_10, TAU};
 
 /// A modulated Gaussian whose spectrum is 20 dB down at the ends of its band; amplitude 1.
@@ -44,12 +43,6 @@ impl Pulse {
     #[must_use]
     pub fn end(&self) -> f64 {
         2.0 * DELAY * self.width()
-    }
-
-    /// Wavelength in vacuum at the middle of the band, m.
-    #[must_use]
-    pub fn wavelength(&self) -> f64 {
-        C0 / self.center
     }
 }
 
