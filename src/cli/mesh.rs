@@ -10,8 +10,8 @@ use crate::pipeline::{self, Density, MeshSettings};
 use crate::project::file;
 use crate::task::Task;
 use crate::tet::{
-    BIN_WIDTH, CellStatistics, QualityReport, RecoveryReport, RegionQuality, Sizing, SizingSettings, TetMesh,
-    WorstCell, fill, quality, tet_qualities,
+    BIN_WIDTH, CellStatistics, QualityReport, RecoveryReport, RegionQuality, SizingSettings, TetMesh, WorstCell, fill,
+    quality, tet_qualities,
 };
 use crate::units::to_mm;
 use anyhow::{Context, Result};
@@ -60,11 +60,10 @@ fn mesh_project(path: &Path, args: &MeshArgs, task: &Task) -> Result<Made> {
 fn mesh_surface(path: &Path, density: Density, task: &Task) -> Result<Made> {
     let surface = surface_json::read_surface(path)?;
     let started = Instant::now();
-    let settings = sizing(&surface.vertices, density);
-    let wanted = Sizing::new(&surface, settings);
-    let filled = fill(&surface, &[], settings, task).with_context(|| format!("meshing {}", path.display()))?;
+    let filled = fill(&surface, &[], sizing(&surface.vertices, density), task)
+        .with_context(|| format!("meshing {}", path.display()))?;
     Ok(Made {
-        quality: quality(&filled.mesh, Some(&|p| wanted.at(p).size), N_WORST),
+        quality: quality(&filled.mesh, Some(&|p| filled.sizing.at(p).size), N_WORST),
         mesh: filled.mesh,
         recovery: filled.recovery,
         map_distance: None,

@@ -116,7 +116,7 @@ impl Triangulation {
         if self.store.corners(home).iter().any(|&c| self.point(c) == p) {
             return false;
         }
-        self.grow_cavity(home, p);
+        self.collect_cavity(home, |mesh, t| insphere(mesh.corner_points(t), p) > 0.0);
         if !self.is_delaunay && (!self.shrink_to_star(home, p) || self.loses_a_vertex()) {
             return false;
         }
@@ -135,8 +135,9 @@ impl Triangulation {
         true
     }
 
-    /// Collects the tetrahedra whose circumsphere holds p, from the one that holds it, and marks them.
-    fn grow_cavity(&mut self, home: TetId, p: DVec3) {
+    /// Makes the cavity of the tetrahedra that hang together with the first one and belong to it, and marks them. Walls
+    /// are not crossed.
+    fn collect_cavity(&mut self, home: TetId, belongs: impl Fn(&Self, TetId) -> bool) {
         self.store.fresh_marks();
         self.store.mark(home);
         self.cavity.clear();
@@ -150,7 +151,7 @@ impl Triangulation {
                 if beyond == TetId::NONE || self.store.is_wall(t, i) || self.store.is_marked(beyond) {
                     continue;
                 }
-                if insphere(self.corner_points(beyond), p) > 0.0 {
+                if belongs(self, beyond) {
                     self.store.mark(beyond);
                     self.cavity.push(beyond);
                 }
@@ -175,26 +176,7 @@ impl Triangulation {
             }
             let kept: Vec<TetId> = self.cavity.iter().copied().filter(|&t| t != dropped).collect();
             // Only what still hangs together with the first one stays.
-            self.store.fresh_marks();
-            self.store.mark(home);
-            self.cavity.clear();
-            self.cavity.push(home);
-            let mut at = 0;
-            while at < self.cavity.len() {
-                let t = self.cavity[at];
-                at += 1;
-                for i in 0..4 {
-                    let beyond = self.store.neighbor(t, i);
-                    if !self.store.is_wall(t, i)
-                        && beyond != TetId::NONE
-                        && !self.store.is_marked(beyond)
-                        && kept.contains(&beyond)
-                    {
-                        self.store.mark(beyond);
-                        self.cavity.push(beyond);
-                    }
-                }
-            }
+            self.collect_cavity(home, |_, t| kept.contains(&t));
         }
         let inner_wall = |t: &TetId| (0..4).any(|i| self.store.is_wall(*t, i) && !self.is_rim(*t, i));
         !self.cavity.iter().any(inner_wall)

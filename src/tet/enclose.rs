@@ -65,8 +65,7 @@ pub struct Enclosed {
 pub fn enclose(block: &Block, settings: &AirSettings, task: &Task) -> Result<Enclosed, EncloseError> {
     let hull = Hull::new(block, settings)?;
     let filled = fill(&hull.surface, &hull.inner, settings.sizing, task)?;
-    let sizing = Sizing::new(&hull.surface, settings.sizing);
-    Ok(Enclosed { mesh: merge(block, &hull, &filled), recovery: filled.recovery, sizing })
+    Ok(Enclosed { mesh: merge(block, &hull, &filled), recovery: filled.recovery, sizing: filled.sizing })
 }
 
 /// The surface of the air, and which of its vertices is which of the block's.

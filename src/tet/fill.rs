@@ -25,6 +25,8 @@ pub struct Filled {
     pub vertex_of: Vec<VertexId>,
     /// What it took to recover the surface.
     pub recovery: RecoveryReport,
+    /// The edge lengths that were wanted.
+    pub sizing: Sizing,
 }
 
 /// Fills a surface.
@@ -58,7 +60,8 @@ pub fn fill(
     let n_surface = surface.vertices.len();
     let is_fixed = |v: VertexId| v.index() < n_surface || report.splits.iter().any(|s| s.middle == v);
     Optimiser::new(&mut mesh, &is_filled, is_fixed).run(task)?;
-    Ok(extract(&mesh, surface, &facets, &is_filled, report))
+    let found = Found { facets: &facets, recovery: report, sizing };
+    Ok(extract(&mesh, surface, &is_filled, found))
 }
 
 fn refuse_crossings(surface: &Surface) -> Result<(), TetError> {
@@ -107,14 +110,16 @@ fn triangulate(points: Vec<DVec3>, n_surface: usize, task: &Task) -> Result<Tria
     Ok(mesh)
 }
 
-/// The filled tetrahedra with the vertices they use, the surface's first.
-fn extract(
-    mesh: &Triangulation,
-    surface: &Surface,
-    facets: &[SurfaceFacet],
-    is_filled: &[bool],
+/// What the stages found beside the mesh.
+struct Found<'a> {
+    facets: &'a [SurfaceFacet],
     recovery: RecoveryReport,
-) -> Filled {
+    sizing: Sizing,
+}
+
+/// The filled tetrahedra with the vertices they use, the surface's first.
+fn extract(mesh: &Triangulation, surface: &Surface, is_filled: &[bool], found: Found<'_>) -> Filled {
+    let Found { facets, recovery, sizing } = found;
     let kept: Vec<_> = mesh.store.tets().filter(|&t| is_filled[mesh.store.region(t).index()]).collect();
     let mut number = vec![VertexId::NONE; mesh.points.len()];
     for &t in &kept {
@@ -145,6 +150,7 @@ fn extract(
         facets,
         vertex_of,
         recovery,
+        sizing,
     }
 }
 
@@ -193,7 +199,8 @@ mod tests {
         let is_filled = [false, true, true];
         Optimiser::new(&mut mesh, &is_filled, |v| v.index() < n_surface).run(&task).expect("not cancelled");
         assert_eq!(mesh.check(), Ok(()), "optimised");
-        let filled = extract(&mesh, &surface, &facets, &is_filled, RecoveryReport::default());
+        let found = Found { facets: &facets, recovery: RecoveryReport::default(), sizing };
+        let filled = extract(&mesh, &surface, &is_filled, found);
         let volumes = (filled.mesh.volumes(), surface.volumes());
         for r in [1, 2] {
             assert!((volumes.0[r] / volumes.1[r] - 1.0).abs() < 1e-12, "region {r}: {volumes:?}");

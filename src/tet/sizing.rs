@@ -17,7 +17,7 @@ pub struct SizingSettings {
 }
 
 /// A vertex with the edge length wanted there.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Site {
     place: DVec3,
     size: f64,
@@ -27,7 +27,7 @@ struct Site {
 }
 
 /// The sizing field.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Sizing {
     settings: SizingSettings,
     /// A k-d tree: the median of each range is its node, axes alternate.
