@@ -73,13 +73,14 @@ fn line(n: usize, layers: usize, n_z: usize, far_end: FaceRole) -> TetMesh {
 
 /// Runs the line for a band around 10 GHz; S11 at the port, and the port's impedance.
 fn reflection(mesh: &TetMesh, distance: f64, step: StepLimit) -> (Sweep, f64) {
-    let network = Network::new(mesh, &NetworkSettings { loss_freq: 10e9, step }, &Task::default()).unwrap();
+    let network =
+        Network::<f32>::new(mesh, &NetworkSettings { step, ..NetworkSettings::new(10e9) }, &Task::default()).unwrap();
     let pulse = Pulse::new(5e9, 15e9).unwrap();
     let mut run = Run::new(&network, pulse);
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some thousand steps")]
     let n_steps = ((pulse.end() + 6.0 * LENGTH * EPS_R.sqrt() / C0) / network.dt).ceil() as usize;
     run.advance(n_steps, &Task::default()).unwrap();
-    let impedance = network.port_impedance;
+    let impedance = network.port_impedance.unwrap();
     let at = FeedLine { impedance, length: distance, eps_r: EPS_R, reference: impedance };
     (sweep(run.record(), &at, &frequencies(6e9, 14e9, 1e9)), impedance)
 }

@@ -5,7 +5,7 @@ use super::mesh::{MeshSettings, Meshed, Shape, mesh};
 use crate::project::Project;
 use crate::results::{FeedLine, Sweep, frequencies, sweep};
 use crate::task::Task;
-use crate::tlm::{Network, NetworkSettings, Pulse, Record, Run, StepLimit};
+use crate::tlm::{Network, NetworkSettings, Pulse, Record, Run, StepLimit, TlmError};
 use crate::units::from_mm;
 use std::time::Instant;
 
@@ -69,8 +69,9 @@ pub fn solve(project: &Project, shape: Shape, settings: &SolveSettings, task: &T
     let [lo, hi] = settings.band;
     let pulse = Pulse::new(lo, hi)?;
     let meshed = mesh(project, shape, settings.mesh, task)?;
-    let network =
-        Network::new(&meshed.mesh, &NetworkSettings { loss_freq: pulse.center, step: StepLimit::Clip(CLIPPED) }, task)?;
+    let how = NetworkSettings { step: StepLimit::Clip(CLIPPED), ..NetworkSettings::new(pulse.center) };
+    let network = Network::<f32>::new(&meshed.mesh, &how, task)?;
+    let port_impedance = network.port_impedance.ok_or(TlmError::NoPort)?;
     let mut run = Run::new(&network, pulse);
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some ten thousand steps")]
     let steps = |time: f64| (time / network.dt).ceil() as usize;
@@ -91,7 +92,7 @@ pub fn solve(project: &Project, shape: Shape, settings: &SolveSettings, task: &T
     }
     let params = project.antenna.to_params();
     let line = FeedLine {
-        impedance: network.port_impedance,
+        impedance: port_impedance,
         length: from_mm(project.antenna.coax_length_mm + project.antenna.ground_thickness_mm),
         eps_r: params.sheath.eps_r,
         reference: REFERENCE,
@@ -99,7 +100,7 @@ pub fn solve(project: &Project, shape: Shape, settings: &SolveSettings, task: &T
     Ok(Solved {
         sweep: sweep(run.record(), &line, &frequencies(lo, hi, RESOLUTION)),
         record: run.record().clone(),
-        port_impedance: network.port_impedance,
+        port_impedance,
         n_clipped: network.n_clipped,
         residual_db,
         speed: run.speed(),

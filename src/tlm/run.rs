@@ -1,7 +1,7 @@
 //! The field in time: scatter, connect, drive and read the port.
 
 use super::blocks::{LANES, Reflected, Scatter, State};
-use super::{Network, Pulse, TlmError};
+use super::{Network, Pulse, Real, TlmError};
 use crate::task::Task;
 use rayon::prelude::*;
 use std::time::Instant;
@@ -45,27 +45,27 @@ impl Record {
 
 /// A run of the field in a network.
 #[derive(Clone, Debug)]
-pub struct Run<'a> {
-    network: &'a Network,
+pub struct Run<'a, T> {
+    network: &'a Network<T>,
     pulse: Pulse,
-    states: Vec<State>,
-    reflected: Vec<Reflected>,
+    states: Vec<State<T>>,
+    reflected: Vec<Reflected<T>>,
     /// Edge voltages; one more than there are edges, always zero.
-    voltages: Vec<f32>,
+    voltages: Vec<T>,
     record: Record,
     seconds: f64,
 }
 
-impl<'a> Run<'a> {
+impl<'a, T: Real> Run<'a, T> {
     /// A run that begins with no field.
     #[must_use]
-    pub fn new(network: &'a Network, pulse: Pulse) -> Self {
+    pub fn new(network: &'a Network<T>, pulse: Pulse) -> Self {
         Self {
             network,
             pulse,
-            states: vec![[[0.0; LANES]; 9]; network.blocks.len()],
-            reflected: vec![[[0.0; LANES]; 6]; network.blocks.len()],
-            voltages: vec![0.0; network.n_edges + 1],
+            states: vec![[[T::default(); LANES]; 9]; network.blocks.len()],
+            reflected: vec![[[T::default(); LANES]; 6]; network.blocks.len()],
+            voltages: vec![T::default(); network.n_edges + 1],
             record: Record { dt: network.dt, ..Record::default() },
             seconds: 0.0,
         }
@@ -101,15 +101,14 @@ impl<'a> Run<'a> {
 
     fn step(&mut self) {
         let incident = self.pulse.at(self.record.total.len() as f64 * self.network.dt);
-        #[allow(clippy::cast_possible_truncation, reason = "the field runs in single precision")]
-        let observed = self.scatter(incident as f32);
+        let observed = self.scatter(T::new(incident));
         self.connect();
         self.record.incident.push(incident);
         self.record.total.push(observed);
     }
 
     /// All cells; returns the total voltage at the port.
-    fn scatter(&mut self, signal: f32) -> f64 {
+    fn scatter(&mut self, signal: T) -> f64 {
         let arch = pulp::Arch::new();
         let voltages = &self.voltages[..];
         let n_inner = self.network.blocks.len() - self.network.boundary.len();
@@ -145,7 +144,7 @@ impl<'a> Run<'a> {
             for ((voltage, bounds), weight) in voltages.iter_mut().zip(starts.windows(2)).zip(&network.weights[first..])
             {
                 let ports = &network.places[bounds[0] as usize..bounds[1] as usize];
-                *voltage = weight * ports.iter().map(|&p| reflected[p as usize]).sum::<f32>();
+                *voltage = *weight * ports.iter().map(|&p| reflected[p as usize]).sum::<T>();
             }
         });
     }
