@@ -180,7 +180,7 @@ impl<'a> Assembly<'a> {
         let region = self.mesh.tets[tet].region;
         let (mut eps_r, mut mu_r) = (self.mesh.regions[region.index()].eps_r, self.loads.mu_r(region));
         if corners.iter().any(|v| self.rim.contains(v)) {
-            (eps_r, mu_r) = (eps_r * sheet_edge::SHARE, mu_r / sheet_edge::SHARE);
+            (eps_r, mu_r) = (eps_r * sheet_edge::PERMITTIVITY, mu_r / sheet_edge::RELUCTIVITY);
         }
         Cell::new(points, eps_r, mu_r, self.free(corners, tet))
     }

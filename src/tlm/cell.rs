@@ -105,7 +105,7 @@ impl Cell {
     }
 
     /// The inductive stub `(L - x² K diag(1/(θ d)) K^T) / x`, clipped where x is too large for the cell.
-    fn stub(&self, x: f64) -> Matrix3<f64> {
+    pub(super) fn stub(&self, x: f64) -> Matrix3<f64> {
         if x <= self.x_max {
             return (self.inductance - self.link * (x * x)) / x;
         }

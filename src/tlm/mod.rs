@@ -24,6 +24,8 @@ mod real;
 mod run;
 mod sheet_edge;
 mod source;
+#[cfg(test)]
+mod tests;
 
 pub use error::TlmError;
 pub use loads::{Loads, Resistor};

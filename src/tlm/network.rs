@@ -118,20 +118,20 @@ fn limit(limits: &[f64], step: StepLimit) -> f64 {
 }
 
 /// Which cell is in which lane of which block, and which edges its ports have.
-struct Slots {
+pub(super) struct Slots {
     /// By lane over all blocks: number of the cell, `None` for filling.
-    cells: Vec<Option<usize>>,
+    pub(super) cells: Vec<Option<usize>>,
     /// By lane: edges of the ports, `n_edges` for dropped ones.
-    edges: Vec<[u32; 6]>,
+    pub(super) edges: Vec<[u32; 6]>,
     n_edges: usize,
     /// Ends of each edge, ascending.
-    ends: Vec<[VertexId; 2]>,
+    pub(super) ends: Vec<[VertexId; 2]>,
     /// Blocks before this one have no boundary faces.
     n_inner_blocks: usize,
 }
 
 impl Slots {
-    fn new(assembly: &Assembly<'_>) -> Self {
+    pub(super) fn new(assembly: &Assembly<'_>) -> Self {
         let n = assembly.cells.len();
         let pad = |count: usize| count.div_ceil(LANES) * LANES;
         let n_inner_lanes = pad(assembly.n_inner);
