@@ -180,7 +180,7 @@ fn order(errors: &[(f64, f64)]) -> f64 {
 }
 
 const CAVITY: DVec3 = DVec3::new(1.0, 0.9, 0.7);
-const SIZES: [f64; 5] = [0.19, 0.14, 0.105, 0.075, 0.055];
+const SIZES: [f64; 5] = [0.17, 0.14, 0.115, 0.095, 0.078];
 
 /// Mean edge length of a mesh, m.
 fn mean_edge(mesh: &TetMesh) -> f64 {
@@ -193,37 +193,65 @@ fn mean_edge(mesh: &TetMesh) -> f64 {
     edges.iter().map(length).sum::<f64>() / edges.len() as f64
 }
 
+/// Displaces the inner vertices at random: our cells are so regular that errors of waves in some directions nearly vanish.
+fn shaken(mut mesh: TetMesh, seed: u64) -> TetMesh {
+    let mut rng = fastrand::Rng::with_seed(seed);
+    let is_fixed: std::collections::BTreeSet<VertexId> = mesh.faces.iter().flat_map(|f| f.vertices).collect();
+    let on_interface = |p: DVec3| (p.z - CAVITY.z / 2.0).abs() < 1e-9;
+    let far = 0.3 * mean_edge(&mesh);
+    let mut stars = vec![Vec::new(); mesh.vertices.len()];
+    mesh.tets.iter().enumerate().for_each(|(t, tet)| tet.vertices.iter().for_each(|v| stars[v.index()].push(t)));
+    for v in (0..mesh.vertices.len()).filter(|&v| !is_fixed.contains(&VertexId::new(v))) {
+        let before = mesh.vertices[v];
+        if on_interface(before) {
+            continue;
+        }
+        mesh.vertices[v] += DVec3::new(rng.f64() - 0.5, rng.f64() - 0.5, rng.f64() - 0.5) * (2.0 * far);
+        let flattest = stars[v].iter().map(|&t| {
+            let [a, b, c, d] = mesh.corners(t);
+            (b - a).cross(c - a).dot(d - a)
+        });
+        if flattest.fold(f64::INFINITY, f64::min) < 0.05 * far.powi(3) {
+            mesh.vertices[v] = before;
+        }
+    }
+    assert_eq!(mesh.check(), Ok(()), "still a mesh");
+    mesh
+}
+
 /// Greatest error of a resonance in units of (k h)² that Whitney functions on good meshes have shown elsewhere.
 const SECOND_ORDER: f64 = 0.013;
 
+/// Fields of the modes 110, 101, 011 and 111 of the cavity: amplitudes at right angles to the wave vectors.
+fn cavity_mode(mode: usize, p: DVec3) -> DVec3 {
+    let k = DVec3::new(PI, PI, PI) / CAVITY;
+    let (sin, cos) = ((k * p).map(f64::sin), (k * p).map(f64::cos));
+    match mode {
+        0 => DVec3::Z * sin.x * sin.y,
+        1 => DVec3::Y * sin.x * sin.z,
+        2 => DVec3::X * sin.y * sin.z,
+        _ => DVec3::new(k.y * cos.x * sin.y * sin.z, -k.x * sin.x * cos.y * sin.z, 0.0),
+    }
+}
+
 #[test]
 fn resonances_of_a_cavity_are_of_second_order() {
-    let mut found = [Vec::new(), Vec::new()];
-    for size in SIZES {
-        let mesh = layered_box(CAVITY, &[1.0], size);
+    let k = DVec3::new(PI, PI, PI) / CAVITY;
+    let exact = [k.with_z(0.0), k.with_y(0.0), k.with_x(0.0), k].map(DVec3::length);
+    let of_size = |size: f64| {
+        let mesh = shaken(layered_box(CAVITY, &[1.0], size), 3);
         let h = mean_edge(&mesh);
         let closed = Closed::new(&mesh, true);
-        let k = DVec3::new(PI, PI, PI) / CAVITY;
-        let fields: [&dyn Fn(DVec3) -> DVec3; 2] = [
-            &|p| DVec3::Z * (k.x * p.x).sin() * (k.y * p.y).sin(),
-            // Mode 111: amplitudes at right angles to the wave vector.
-            &|p| {
-                let (sin, cos) = ((k * p).map(f64::sin), (k * p).map(f64::cos));
-                DVec3::new(k.y * cos.x * sin.y * sin.z, -k.x * sin.x * cos.y * sin.z, 0.0)
-            },
-        ];
-        for (mode, exact) in [k.with_z(0.0).length(), k.length()].into_iter().enumerate() {
-            let error = closed.wave_number(fields[mode], exact) / exact - 1.0;
-            println!("h {h:.4}: {} cells, mode {mode}: {error:+.2e}", mesh.tets.len());
-            assert!(error.abs() < SECOND_ORDER * (exact * h).powi(2), "h {h}, mode {mode}: {error:e}");
-            found[mode].push((h, error));
+        let errors = [0, 1, 2, 3].map(|m| closed.wave_number(|p| cavity_mode(m, p), exact[m]) / exact[m] - 1.0);
+        println!("h {h:.4}: {} cells: {errors:+.2e?}", mesh.tets.len());
+        for (error, k) in errors.iter().zip(exact) {
+            assert!(error.abs() < SECOND_ORDER * (k * h).powi(2), "h {h}: {error:e} at {k}");
         }
-    }
-    for (mode, errors) in found.iter().enumerate() {
-        let order = order(errors);
-        println!("mode {mode}: order {order:.2}");
-        assert!((1.8..2.3).contains(&order), "mode {mode}: order {order}, {errors:?}");
-    }
+        (h, (errors.iter().map(|e| e * e).sum::<f64>() / 4.0).sqrt())
+    };
+    let errors = SIZES.map(of_size);
+    println!("order {:.2}", order(&errors));
+    assert!((1.8..2.3).contains(&order(&errors)), "order {}: {errors:?}", order(&errors));
 }
 
 /// Wave number of the lowest mode of the cavity whose lower half is filled, and the axial ones in both halves: the root
@@ -262,7 +290,7 @@ fn a_half_filled_cavity_is_of_second_order_too() {
         DVec3::new(along, k.y * sin.x * cos.y * slope, k.length_squared() * sin.x * sin.y * phi) / eps_r
     };
     let of_size = |size: f64| {
-        let mesh = layered_box(CAVITY, &[EPS_R, 1.0], size);
+        let mesh = shaken(layered_box(CAVITY, &[EPS_R, 1.0], size), 4);
         let h = mean_edge(&mesh);
         let error = Closed::new(&mesh, true).wave_number(field, exact) / exact - 1.0;
         println!("h {h:.4}: {} cells: {error:+.2e}", mesh.tets.len());
@@ -271,6 +299,7 @@ fn a_half_filled_cavity_is_of_second_order_too() {
         (h, error)
     };
     let errors = SIZES.map(of_size);
+    println!("half filled: order {:.2}", order(&errors));
     assert!((1.8..2.3).contains(&order(&errors)), "order {}: {errors:?}", order(&errors));
 }
 
@@ -339,13 +368,17 @@ fn sheet_edges_hold_the_energy_of_the_singular_field() {
     for (name, field, exact) in
         [("inductive", &inductive as &dyn Fn(DVec3) -> DVec3, PI), ("capacitive", &capacitive, K.hypot(along))]
     {
+        let mut last = (0.0, 0.0);
         for m in [4, 6] {
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few cells")]
             let mesh = slit_cylinder(m, (height * m as f64).round() as usize, height);
             let [without, with] =
                 [false, true].map(|on| Closed::new(&mesh, on).wave_number(field, exact) / exact - 1.0);
             println!("{name}, {m} cells: {} cells, {without:+.2e} without, {with:+.2e} with", mesh.tets.len());
+            assert!(with.abs() < 0.45 * without.abs() && with.abs() < 1.5e-2, "{name}, {m}: {without:e}, {with:e}");
+            last = (without, with);
         }
+        assert!(last.1.abs() < 0.2 * last.0.abs() && last.0.abs() > 0.01, "{name}: {last:?}");
     }
 }
 
