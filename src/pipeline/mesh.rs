@@ -13,11 +13,13 @@ use crate::tet::{
     quality,
 };
 use crate::units::{C0, from_mm};
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::time::Instant;
 
 /// Which of an antenna's shapes is meshed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Shape {
     /// Carried through the posed cage, compensated as the project says.
     #[default]
@@ -29,7 +31,8 @@ pub enum Shape {
 }
 
 /// How fine a mesh is.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Density {
     /// For a first look.
     Coarse,
@@ -41,7 +44,8 @@ pub enum Density {
 }
 
 /// What a mesh is made like.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct MeshSettings {
     /// How fine.
     pub density: Density,

@@ -12,12 +12,14 @@
 mod error;
 mod fields;
 pub mod live;
+mod looks;
 mod mesh;
 pub mod mesh_job;
 mod retreat;
 mod scene;
 mod solve;
 mod stages;
+mod stored;
 mod summary;
 pub mod worker;
 
@@ -26,6 +28,7 @@ pub use fields::Fields;
 pub use mesh::{Density, MeshSettings, Meshed, Shape, mesh};
 pub use retreat::retreat;
 pub use scene::Scene;
-pub use solve::{Running, SolveSettings, Solved, solve};
+pub use solve::{Running, SolveSettings, Solved, StopRule, solve};
 pub use stages::{Deformed, Stages, apply_cage, deform, exact_cylinder, flat, run};
+pub use stored::{Job, RunFigures, Stored, results_dir};
 pub use summary::{FiguresReport, summary};

@@ -20,6 +20,7 @@ use super::s_params::{FeedLine, Sweep, reflection, transform};
 use crate::tlm::Record;
 use nalgebra::{Complex, DMatrix, DVector, Schur, SymmetricEigen};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 
 /// A damped oscillation, `Re(amplitude exp((-decay + j 2 pi freq) t))`.
@@ -63,7 +64,8 @@ pub struct Fit {
 }
 
 /// A resonance by fit.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct FittedResonance {
     /// Frequency of the strongest mode in the band, Hz.
     pub freq: f64,
