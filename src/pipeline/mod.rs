@@ -10,6 +10,7 @@
 //! it. A [`MeshJob`](mesh_job::MeshJob) fills antenna and air with tetrahedra beside all that.
 
 mod error;
+mod estimate;
 mod fields;
 pub mod live;
 mod looks;
@@ -24,6 +25,7 @@ mod summary;
 pub mod worker;
 
 pub use error::PipelineError;
+pub use estimate::{Estimate, estimate};
 pub use fields::Fields;
 pub use mesh::{Density, MeshSettings, Meshed, Shape, mesh};
 pub use retreat::retreat;
