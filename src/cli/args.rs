@@ -202,6 +202,9 @@ pub struct SolveArgs {
     /// Go on where the same run was interrupted
     #[arg(long)]
     pub(super) resume: bool,
+    /// Time between checkpoints of a long run, seconds; Ctrl-C leaves one in any case
+    #[arg(long, value_name = "SECONDS", default_value_t = 60)]
+    pub(super) checkpoint_every: u64,
     /// Write S11 as table, Touchstone and plot into this folder; made where it is missing
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,

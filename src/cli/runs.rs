@@ -13,11 +13,19 @@ use anyhow::{Context, Result};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// Checkpoints are this far apart: what a power cut costs at most.
-const EVERY: Duration = Duration::from_secs(60);
 /// Relative tolerance of the settled rule. Ten times as much already cuts coarse runs off before weak modes show;
 /// a tenth waits longer than the decay by 40 dB does.
 const TOLERANCE: f64 = 5e-4;
+
+/// Where runs are kept, and how.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Keep<'a> {
+    /// Folder of results and checkpoints.
+    pub(super) dir: &'a Path,
+    pub(super) resume: Resume,
+    /// Time between checkpoints: what a power cut costs at most.
+    pub(super) every: Duration,
+}
 
 /// Whether a run goes on from a checkpoint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,10 +66,10 @@ pub(super) fn solve(
     project: &Project,
     shape: Shape,
     settings: &SolveSettings,
-    dir: &Path,
-    resume: Resume,
+    keep: Keep<'_>,
     task: &Task,
 ) -> Result<(Solved, Stored)> {
+    let Keep { dir, resume, every } = keep;
     let job = Job::new(project, shape, settings);
     let path = job.checkpoint_path(dir);
     let before = match resume {
@@ -74,7 +82,7 @@ pub(super) fn solve(
         Resume::IfThere => path.exists().then(|| checkpoint::read(&path).ok()).flatten(),
         Resume::Never => None,
     };
-    let mut keeper = Keeper { path: &path, written: Instant::now(), task, result: Ok(false) };
+    let mut keeper = Keeper { path: &path, written: Instant::now(), every, task, result: Ok(false) };
     let mut run = |from| pipeline::solve(project, shape, settings, from, &mut |running| keeper.watch(running), task);
     let solved = match (run(before.as_ref()), resume) {
         (Err(PipelineError::Solver(_)), Resume::IfThere) if before.is_some() => run(None),
@@ -101,6 +109,7 @@ pub(super) fn solve(
 struct Keeper<'a> {
     path: &'a Path,
     written: Instant,
+    every: Duration,
     task: &'a Task,
     /// Whether the last state was kept, or why one could not be.
     result: Result<bool, IoError>,
@@ -109,7 +118,7 @@ struct Keeper<'a> {
 impl Keeper<'_> {
     fn watch(&mut self, running: &Running<'_>) {
         let is_called_off = !running.goes_on && self.task.is_cancelled();
-        if self.result.is_err() || !(is_called_off || running.goes_on && self.written.elapsed() >= EVERY) {
+        if self.result.is_err() || !(is_called_off || running.goes_on && self.written.elapsed() >= self.every) {
             return;
         }
         if let Some(folder) = self.path.parent()

@@ -2,7 +2,7 @@
 
 use super::args::SolveArgs;
 use super::plot::{Axis, Figure, Panel, Point, Series, Style};
-use super::runs::{self, Resume};
+use super::runs::{self, Keep, Resume};
 use super::study::palette;
 use crate::io::{csv, touchstone};
 use crate::pipeline::{Solved, results_dir};
@@ -13,6 +13,7 @@ use crate::units::GHZ;
 use anyhow::{Context, Result};
 use serde::Serialize;
 use std::path::Path;
+use std::time::Duration;
 
 pub(super) fn run(args: &SolveArgs, task: &Task) -> Result<()> {
     let project = file::read(&args.file)?;
@@ -20,8 +21,9 @@ pub(super) fn run(args: &SolveArgs, task: &Task) -> Result<()> {
     let name = args.file.display();
     let dir = results_dir(&args.file);
     let resume = if args.resume { Resume::Must } else { Resume::Never };
-    let (solved, stored) = runs::solve(&project, args.shape.into(), &settings, &dir, resume, task)
-        .with_context(|| format!("solving {name}"))?;
+    let keep = Keep { dir: &dir, resume, every: Duration::from_secs(args.checkpoint_every) };
+    let (solved, stored) =
+        runs::solve(&project, args.shape.into(), &settings, keep, task).with_context(|| format!("solving {name}"))?;
     let mut files = vec![stored.job().result_path(&dir).display().to_string()];
     files
         .extend(args.out.as_deref().map(|dir| write(&solved, &name.to_string(), dir)).transpose()?.unwrap_or_default());

@@ -37,13 +37,12 @@ impl SolveSettings {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum StopRule {
-    /// The reflected voltage has fallen by this, dB (positive). S11 is that of the record as it stands.
+    /// The reflected voltage has fallen by this, dB (positive).
     Decay {
         /// How far, dB.
         db: f64,
     },
-    /// The smallest |S11| of the record continued by its fitted modes stays where it is over some looks. S11 is that of
-    /// the continued record.
+    /// The smallest |S11| of the record continued by its fitted modes stays where it is over some looks.
     Settled {
         /// Greatest difference of its frequency, relative; ten times as much is allowed to |S11| itself.
         tolerance: f64,
@@ -55,7 +54,7 @@ pub enum StopRule {
 pub struct Solved {
     /// Its mesh.
     pub meshed: Meshed,
-    /// S11 at the ground's top, 50 ohm.
+    /// S11 at the ground's top, 50 ohm, of the record continued by its modes.
     pub sweep: Sweep,
     /// The port's time series.
     pub record: Record,
@@ -79,6 +78,8 @@ pub struct Solved {
 const REFERENCE: f64 = 50.0;
 /// Share of cells whose stubs are clipped: doubles the step, shifts no resonance visibly.
 const CLIPPED: f64 = 0.003;
+/// A record whose modes leave over more than this part of it is not continued.
+const MISFIT: f64 = 0.02;
 /// Steps between two looks at the stop rule.
 const STRIDE: usize = 256;
 /// Distance of the frequencies, Hz.
@@ -158,13 +159,10 @@ pub fn solve(
     drive(&mut run, &mut progress, watch, task)?;
     let record = run.record();
     let freqs = frequencies(lo, hi, RESOLUTION);
-    let continued = match settings.stop {
-        StopRule::Decay { .. } => None,
-        StopRule::Settled { .. } => fit(record, progress.n_pulse, hi),
-    };
+    // Without its rest a record cut off at 40 dB shifts the resonance by up to 0.05 %.
+    let modes = fit(record, progress.n_pulse, hi).filter(|modes| modes.misfit < MISFIT);
     Ok(Solved {
-        sweep: continued
-            .map_or_else(|| sweep(record, &line, &freqs), |modes| continued_sweep(record, &modes, &line, &freqs)),
+        sweep: modes.map_or_else(|| sweep(record, &line, &freqs), |m| continued_sweep(record, &m, &line, &freqs)),
         fitted: fitted_resonance(record, progress.n_pulse, settings.band),
         record: record.clone(),
         port_impedance: network.port_impedance,

@@ -14,7 +14,7 @@
 //! time in closed form, which gives S11 early. How far the resonance can be trusted shows in fits to parts of the same
 //! series.
 //!
-//! Sources: \[HS90\], \[RK89\]. Not handled: series that are still driven, and growing modes, which are left out.
+//! Sources: \[HS90\], \[RK89\]. Not handled: series that are still driven; modes that grow or do not fall are left out.
 
 use super::s_params::{FeedLine, Sweep, reflection, transform};
 use crate::tlm::Record;
@@ -84,6 +84,8 @@ const SAMPLES: f64 = 4.0;
 const NOISE: f64 = 3e-5;
 /// At least this many samples for each factor: with fewer there is no room to tell noise from modes.
 const SAMPLES_PER_FACTOR: usize = 3;
+/// Modes that fall by less over the whole series cannot be told from steady ones, whose rest would have no end.
+const LEAST_FALL: f64 = 0.03;
 /// Samples beyond this many say nothing new, and the decomposition's cost grows with their cube.
 const MAX_SAMPLES: usize = 400;
 /// Parts of the series that are fitted to see how far the resonance can be trusted: begin and end.
@@ -196,8 +198,8 @@ fn factors(samples: &[f64]) -> Option<Vec<Complex<f64>>> {
     let product = head.tr_mul(&moved);
     let shift = &product + last.transpose() * (last * &product) / (1.0 - last.norm_squared());
     let all = Schur::try_new(shift, f64::EPSILON, ITERATIONS)?.complex_eigenvalues();
-    // Oscillations that fall: what grows or does not swing is no resonance.
-    let wanted = |z: &Complex<f64>| z.im > 1e-6 && z.norm() < 1.0;
+    // Oscillations that fall: what grows or does not swing is no resonance, nor can it be continued.
+    let wanted = |z: &Complex<f64>| z.im > 1e-6 && -z.norm().ln() * n as f64 > LEAST_FALL;
     Some(all.iter().copied().filter(wanted).collect())
 }
 

@@ -11,7 +11,7 @@ mod report;
 
 use super::args::CompareArgs;
 use super::plot::{Axis, Figure, Panel, Point, Series, Style};
-use super::runs::{self, Resume};
+use super::runs::{self, Keep, Resume};
 use super::study::palette;
 use crate::io::{touchstone, write_atomic};
 use crate::pipeline::{Job, PipelineError, Stored, results_dir};
@@ -22,6 +22,7 @@ use anyhow::{Context, Result};
 use cases::{Group, Variant};
 use report::{Report, Row};
 use std::path::Path;
+use std::time::Duration;
 
 pub(super) fn run(args: &CompareArgs, task: &Task) -> Result<()> {
     let (groups, dir) = match (&args.file, args.paper) {
@@ -58,7 +59,8 @@ fn found_or_solved(
     if let Some(stored) = Stored::find(&Job::new(&variant.project, variant.shape, &settings), dir)? {
         return Ok(Ok(stored));
     }
-    match runs::solve(&variant.project, variant.shape, &settings, dir, Resume::IfThere, task) {
+    let keep = Keep { dir, resume: Resume::IfThere, every: Duration::from_secs(60) };
+    match runs::solve(&variant.project, variant.shape, &settings, keep, task) {
         Ok((_, stored)) => Ok(Ok(stored)),
         Err(error) => match error.downcast_ref::<PipelineError>() {
             Some(PipelineError::Cancelled(_) | PipelineError::Solver(_)) | None => {
