@@ -74,13 +74,14 @@ fn line(n: usize, layers: usize, n_z: usize, far_end: FaceRole) -> TetMesh {
 
 /// Runs the line for a band around 10 GHz; S11 at the port, and the port's impedance.
 fn reflection(mesh: &TetMesh, distance: f64, step: StepLimit) -> (Sweep, f64) {
-    let network = Network::new(mesh, &NetworkSettings { loss_freq: 10e9, step }, &Task::default()).unwrap();
+    let network =
+        Network::<f32>::new(mesh, &NetworkSettings { step, ..NetworkSettings::new(10e9) }, &Task::default()).unwrap();
     let pulse = Pulse::new(5e9, 15e9).unwrap();
     let mut run = Run::new(&network, pulse);
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some thousand steps")]
     let n_steps = ((pulse.end() + 6.0 * LENGTH * EPS_R.sqrt() / C0) / network.dt).ceil() as usize;
     run.advance(n_steps, &Task::default()).unwrap();
-    let impedance = network.port_impedance;
+    let impedance = network.port_impedance.unwrap();
     let at = FeedLine { impedance, length: distance, eps_r: EPS_R, reference: impedance };
     (sweep(run.record(), &at, &frequencies(6e9, 14e9, 1e9)), impedance)
 }
@@ -138,8 +139,8 @@ fn the_field_is_the_same_bits_on_any_number_of_threads() {
 fn a_resumed_run_has_the_bits_of_an_uninterrupted_one_and_belongs_to_its_network_alone() {
     let task = Task::default();
     let network = |far_end| {
-        let settings = NetworkSettings { loss_freq: 10e9, step: StepLimit::Clip(0.003) };
-        Network::new(&line(16, 2, 8, far_end), &settings, &task).unwrap()
+        let settings = NetworkSettings { step: StepLimit::Clip(0.003), ..NetworkSettings::new(10e9) };
+        Network::<f32>::new(&line(16, 2, 8, far_end), &settings, &task).unwrap()
     };
     let (open, pulse) = (network(FaceRole::Outer), Pulse::new(5e9, 15e9).unwrap());
     let mut straight = Run::new(&open, pulse);

@@ -108,7 +108,7 @@ impl<'a> Looks<'a> {
     }
 
     /// The run as whoever watches sees it.
-    pub(super) fn running<'r>(&self, run: &'r Run<'r>, goes_on: bool) -> Running<'r> {
+    pub(super) fn running<'r>(&self, run: &'r Run<'r, f32>, goes_on: bool) -> Running<'r> {
         let record = run.record();
         let seconds = |n_steps: f64| n_steps * run.n_tets() as f64 / run.speed().max(1.0);
         let n_most_left = self.n_most.saturating_sub(record.total.len()) as f64;

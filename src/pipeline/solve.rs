@@ -6,7 +6,7 @@ use super::mesh::{MeshSettings, Meshed, Shape, mesh};
 use crate::project::Project;
 use crate::results::{FeedLine, FittedResonance, Sweep, continued_sweep, fit, fitted_resonance, frequencies, sweep};
 use crate::task::Task;
-use crate::tlm::{Checkpoint, Network, NetworkSettings, Pulse, Record, Run, StepLimit};
+use crate::tlm::{Checkpoint, Network, NetworkSettings, Pulse, Record, Run, StepLimit, TlmError};
 use crate::units::from_mm;
 use serde::{Deserialize, Serialize};
 use std::time::{Duration, Instant};
@@ -90,7 +90,7 @@ const WATCH: Duration = Duration::from_millis(500);
 /// A run under way, for whoever watches it.
 #[derive(Clone, Copy, Debug)]
 pub struct Running<'a> {
-    pub(super) run: &'a Run<'a>,
+    pub(super) run: &'a Run<'a, f32>,
     /// The port's time series so far.
     pub record: &'a Record,
     /// The line between port and antenna.
@@ -148,9 +148,10 @@ pub fn solve(
     let [lo, hi] = settings.band;
     let pulse = Pulse::new(lo, hi)?;
     let meshed = mesh(project, shape, settings.mesh, task)?;
-    let network =
-        Network::new(&meshed.mesh, &NetworkSettings { loss_freq: pulse.center, step: StepLimit::Clip(CLIPPED) }, task)?;
-    let line = feed_line(project, network.port_impedance);
+    let how = NetworkSettings { step: StepLimit::Clip(CLIPPED), ..NetworkSettings::new(pulse.center) };
+    let network = Network::<f32>::new(&meshed.mesh, &how, task)?;
+    let port_impedance = network.port_impedance.ok_or(TlmError::NoPort)?;
+    let line = feed_line(project, port_impedance);
     let mut run = match resume {
         None => Run::new(&network, pulse),
         Some(checkpoint) => Run::resume(&network, pulse, checkpoint)?,
@@ -165,7 +166,7 @@ pub fn solve(
         sweep: modes.map_or_else(|| sweep(record, &line, &freqs), |m| continued_sweep(record, &m, &line, &freqs)),
         fitted: fitted_resonance(record, progress.n_pulse, settings.band),
         record: record.clone(),
-        port_impedance: network.port_impedance,
+        port_impedance,
         is_settled: progress.is_met(),
         n_clipped: network.n_clipped,
         residual_db: progress.looks.last().map_or(0.0, |look| look.db),
@@ -186,7 +187,7 @@ fn feed_line(project: &Project, impedance: f64) -> FeedLine {
 
 /// Runs until the stop rule is met.
 fn drive(
-    run: &mut Run<'_>,
+    run: &mut Run<'_, f32>,
     progress: &mut Looks<'_>,
     watch: &mut dyn FnMut(&Running<'_>),
     task: &Task,

@@ -1,12 +1,13 @@
 //! Makes the worst tetrahedra better: flips, moves of free vertices, and new vertices in slivers held by the surface.
 //!
 //! The measure is the mean ratio, cubed. Nothing touches the surface, and every step raises the smallest ratio of the
-//! tetrahedra it changes, so the mesh never gets worse anywhere that counts.
+//! tetrahedra it changes, so the mesh never gets worse anywhere that counts. At the end the smallest tetrahedra, which
+//! rule the time step of a field solver, are given room where that costs no shape.
 
 use super::delaunay::Triangulation;
 use super::error::TetError;
 use super::flip::Wanted;
-use super::shape::{cubed, cubed_ratio, exact_ratio};
+use super::shape::{cubed, cubed_ratio, exact_ratio, inradius};
 use super::store::{EDGES, Ring};
 use crate::geometry::{DVec3, TetId, VertexId};
 use crate::task::Task;
@@ -22,6 +23,11 @@ const SEARCH_BELOW: f64 = cubed(0.55);
 const DIVIDE_BELOW: f64 = cubed(0.38);
 /// A division must raise the cubed ratio by this factor: less would not pay for one more vertex.
 const DIVISION_GAIN: f64 = 1.06;
+/// Share of the tetrahedra whose inradius is raised at the end, and rounds of that.
+const SMALLEST: f64 = 0.002;
+const WIDENING_PASSES: usize = 4;
+/// Cubed ratio that widening may fall to in a star that is better.
+const WIDEN_ABOVE: f64 = cubed(0.6);
 /// Steps of the search for a better place, halving where nothing helps.
 const SEARCH_STEPS: usize = 6;
 /// Shares of the way from the middle of a sliver's edge to its ring at which a new vertex is tried.
@@ -77,7 +83,58 @@ impl<'a> Optimiser<'a> {
             self.move_vertices((!smoothing).then_some(SEARCH_BELOW), task)?;
             phase.advance(1);
         }
-        self.flip_bad(FLIP_BELOW[1], task)
+        self.flip_bad(FLIP_BELOW[1], task)?;
+        for _ in 0..WIDENING_PASSES {
+            self.widen(task)?;
+        }
+        Ok(())
+    }
+
+    /// Gives the smallest tetrahedra room: their free vertices go where the smallest inradius around them is largest.
+    fn widen(&mut self, task: &Task) -> Result<(), TetError> {
+        let mut sized: Vec<(f64, TetId)> = self
+            .mesh
+            .store
+            .tets()
+            .filter(|&t| self.counts(t))
+            .map(|t| (inradius(self.mesh.corner_points(t)), t))
+            .collect();
+        sized.sort_unstable_by(|p, q| p.0.total_cmp(&q.0).then(p.1.cmp(&q.1)));
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a part of the length")]
+        sized.truncate((SMALLEST * sized.len() as f64).ceil() as usize);
+        let mut star = Vec::new();
+        for (_, t) in sized {
+            task.check()?;
+            for v in self.mesh.store.corners(t) {
+                if self.is_free[v.index()] {
+                    self.mesh.store.star(v, &mut star);
+                    self.widen_at(v, &star);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn widen_at(&mut self, v: VertexId, star: &[TetId]) {
+        let start = self.mesh.point(v);
+        let floor = self.worst_at(v, star, start, cubed_ratio).min(WIDEN_ABOVE);
+        let before = self.worst_at(v, star, start, inradius);
+        let mut best = (before, start);
+        let mut step = before;
+        for _ in 0..SEARCH_STEPS {
+            let from = best.0;
+            for direction in DIRECTIONS {
+                let p = best.1 + direction * step;
+                let least = self.worst_at(v, star, p, inradius);
+                if least > best.0 && self.worst_at(v, star, p, exact_ratio) >= floor {
+                    best = (least, p);
+                }
+            }
+            if best.0 <= from {
+                step *= 0.5;
+            }
+        }
+        self.mesh.points[v.index()] = best.1;
     }
 
     fn counts(&self, t: TetId) -> bool {

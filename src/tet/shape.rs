@@ -18,6 +18,13 @@ pub(super) fn cubed_ratio([a, b, c, d]: [DVec3; 4]) -> f64 {
     432.0 * volume6 * volume6.abs() / (squares * squares * squares)
 }
 
+/// Radius of the sphere inside, m: three volumes over the surface; negative inside out.
+pub(super) fn inradius([a, b, c, d]: [DVec3; 4]) -> f64 {
+    let (u, v, w) = (b - a, c - a, d - a);
+    let faces = u.cross(v).length() + v.cross(w).length() + w.cross(u).length() + (v - u).cross(w - u).length();
+    u.cross(v).dot(w) / faces
+}
+
 /// The cube of a mean ratio, as a threshold for [`cubed_ratio`].
 pub(super) const fn cubed(ratio: f64) -> f64 {
     ratio * ratio * ratio
@@ -43,5 +50,7 @@ mod tests {
         assert!((cubed_ratio(positive.map(|p| p * 1e-3)) - 1.0).abs() < 1e-14, "whatever its size");
         assert!(cubed_ratio([positive[1], positive[0], positive[2], positive[3]]) < -0.99, "turned");
         assert!(exact_ratio([DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::X + DVec3::Y]) < 0.0, "flat");
+        // A sphere in a cube's regular tetrahedron touches at a third of the way to its corners.
+        assert!((inradius(positive) - 1.0 / 3.0_f64.sqrt()).abs() < 1e-14, "inradius {}", inradius(positive));
     }
 }

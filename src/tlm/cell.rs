@@ -70,8 +70,8 @@ fn whitney_mass(points: [DVec3; 4], volume: f64, gradients: [DVec3; 4]) -> Matri
 
 impl Cell {
     /// * `points`: corners in the order of their numbers, either orientation, m.
-    /// * `eps_r`: relative permittivity.
-    pub(super) fn new(points: [DVec3; 4], eps_r: f64, free: [bool; 6]) -> Self {
+    /// * `eps_r`, `mu_r`: relative permittivity and permeability.
+    pub(super) fn new(points: [DVec3; 4], eps_r: f64, mu_r: f64, free: [bool; 6]) -> Self {
         let [e1, e2, e3] = [1, 2, 3].map(|k| points[k] - points[0]);
         let determinant = e1.cross(e2).dot(e3);
         let volume = determinant.abs() / 6.0;
@@ -80,7 +80,7 @@ impl Cell {
         let kept = |a: usize, b: usize| free[a] && free[b];
         let capacitance = Matrix6::from_fn(|a, b| if kept(a, b) { eps_r * mass[(a, b)] } else { 0.0 });
         let columns = [e3, e2, e1].map(|e| e * (determinant.signum() / 3.0));
-        let inverse = Matrix3::from_fn(|i, j| columns[i].dot(columns[j]) / volume);
+        let inverse = Matrix3::from_fn(|i, j| columns[i].dot(columns[j]) / (mu_r * volume));
         let full = circulations();
         let curl = Curl::from_fn(|i, e| if free[e] { full[(i, e)] } else { 0.0 });
         let d: [f64; 6] =
@@ -105,7 +105,7 @@ impl Cell {
     }
 
     /// The inductive stub `(L - x² K diag(1/(θ d)) K^T) / x`, clipped where x is too large for the cell.
-    fn stub(&self, x: f64) -> Matrix3<f64> {
+    pub(super) fn stub(&self, x: f64) -> Matrix3<f64> {
         if x <= self.x_max {
             return (self.inductance - self.link * (x * x)) / x;
         }
@@ -120,7 +120,8 @@ impl Cell {
     /// The coefficients for half a time step x.
     ///
     /// * `loss`: conductance matrix of lossy material and boundary faces.
-    pub(super) fn coefficients(&self, x: f64, loss: &Matrix6<f64>) -> Coefficients {
+    /// * `magnetic_loss`: magnetic conductance as a share of the lossless A, which is L/x up to terms in x.
+    pub(super) fn coefficients(&self, x: f64, loss: &Matrix6<f64>, magnetic_loss: f64) -> Coefficients {
         let kept = |a: usize, b: usize| self.free[a] && self.free[b];
         let full = Matrix6::from_fn(|a, b| match kept(a, b) {
             true => self.capacitance[(a, b)] / x + loss[(a, b)],
@@ -128,7 +129,7 @@ impl Cell {
         });
         let inverse = full.try_inverse().expect("positive definite");
         let d = Matrix6::from_fn(|a, b| if kept(a, b) { inverse[(a, b)] } else { 0.0 });
-        let a = self.stub(x) + self.curl * d * self.curl.transpose();
+        let a = (self.stub(x) + self.curl * d * self.curl.transpose()) * (1.0 + magnetic_loss);
         let a_inverse = a.try_inverse().expect("positive definite");
         Coefficients { d, a_inverse, y: self.line.map(|line| line / x) }
     }
@@ -162,7 +163,7 @@ mod tests {
             let volume = (points[1] - points[0]).cross(points[2] - points[0]).dot(points[3] - points[0]).abs();
             // Flat cells lose digits in the inverses, in proportion to how flat they are.
             if volume > 2e-10 {
-                return Cell::new(points, 1.0 + 3.0 * rng.f64(), free);
+                return Cell::new(points, 1.0 + 3.0 * rng.f64(), 1.0 + rng.f64(), free);
             }
         }
     }
@@ -178,7 +179,7 @@ mod tests {
 
     /// The scattering matrix of the energy-normalised states, 15 x 15.
     fn scattering(cell: &Cell, x: f64) -> DMatrix<f64> {
-        let c = cell.coefficients(x, &M6::zeros());
+        let c = cell.coefficients(x, &M6::zeros(), 0.0);
         let stub = cell.capacitance / x - M6::from_diagonal(&nalgebra::Vector6::from_fn(|e, _| c.y[e]));
         let (capacitive, inductive) = (root(stub), root(cell.stub(x)));
         let d = DMatrix::from_fn(6, 6, |i, j| c.d[(i, j)]);
@@ -228,9 +229,9 @@ mod tests {
     fn a_dropped_port_never_shortens_the_time_step() {
         let mut rng = fastrand::Rng::with_seed(10);
         let points: [DVec3; 4] = std::array::from_fn(|_| DVec3::new(rng.f64(), rng.f64(), rng.f64()) * 1e-3);
-        let all = Cell::new(points, 2.0, [true; 6]);
-        let some = Cell::new(points, 2.0, [false, true, true, false, true, true]);
-        let none = Cell::new(points, 2.0, [false; 6]);
+        let all = Cell::new(points, 2.0, 1.0, [true; 6]);
+        let some = Cell::new(points, 2.0, 1.0, [false, true, true, false, true, true]);
+        let none = Cell::new(points, 2.0, 1.0, [false; 6]);
         assert!(some.x_max >= all.x_max * 0.999, "{} against {}", some.x_max, all.x_max);
         assert!(none.x_max.is_infinite(), "nothing happens in a conductor's corner");
     }

@@ -18,16 +18,17 @@ pub struct Checkpoint {
     pub field: Vec<f32>,
 }
 
-impl Network {
+impl Network<f32> {
     /// SHA-256 of all that rules a run: coefficients, connections, boundary, time step and pulse.
     fn fingerprint(&self, pulse: &Pulse) -> [u8; 32] {
         let mut hash = Sha256::new();
         for value in [self.dt, pulse.center, pulse.half_width] {
             hash.update(value.to_le_bytes());
         }
-        let mut lane = |lane: &Lane| hash.update(lane.map(f32::to_le_bytes).as_flattened());
+        let mut lane = |lane: &Lane<f32>| hash.update(lane.map(f32::to_le_bytes).as_flattened());
         self.blocks.iter().flat_map(|b| &b.coefficients).for_each(&mut lane);
         self.boundary.iter().flat_map(|b| &b.terms).for_each(&mut lane);
+        self.weights.iter().for_each(|weight| hash.update(weight.to_le_bytes()));
         for edges in self.blocks.iter().flat_map(|b| &b.edges) {
             hash.update(edges.map(u32::to_le_bytes).as_flattened());
         }
@@ -35,7 +36,7 @@ impl Network {
     }
 }
 
-impl<'a> Run<'a> {
+impl<'a> Run<'a, f32> {
     /// The state of this run.
     #[must_use]
     pub fn checkpoint(&self) -> Checkpoint {
@@ -53,7 +54,7 @@ impl<'a> Run<'a> {
     ///
     /// # Errors
     /// [`TlmError::ForeignCheckpoint`] if it was taken of another mesh, band or material.
-    pub fn resume(network: &'a Network, pulse: Pulse, checkpoint: &Checkpoint) -> Result<Self, TlmError> {
+    pub fn resume(network: &'a Network<f32>, pulse: Pulse, checkpoint: &Checkpoint) -> Result<Self, TlmError> {
         let mut run = Self::new(network, pulse);
         let n_cells = run.states.len() * 9 * LANES;
         let n_reflected = run.reflected.len() * 6 * LANES;

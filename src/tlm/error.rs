@@ -14,6 +14,20 @@ pub enum TlmError {
         /// Name of the port's group.
         port: String,
     },
+    /// A lossy sheet that the mesh does not have.
+    #[error("the mesh has no conductor named \"{name}\" that could be a lossy sheet")]
+    NoSheet {
+        /// The name asked for.
+        name: String,
+    },
+    /// A load that is no passive one.
+    #[error("{what} is {value}, but must be a positive number")]
+    NotPositive {
+        /// What it is.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+    },
     /// The frequencies make no sense.
     #[error("the band from {lo_ghz} to {hi_ghz} GHz is none: both must be positive, the first one smaller", lo_ghz = lo / 1e9, hi_ghz = hi / 1e9)]
     Band {

@@ -14,18 +14,26 @@
 //!
 //! Sources: \[SEW05\] (unstructured TLM), \[JOH87\] (the condensed node on cubes).
 
+mod assembly;
 mod blocks;
 mod cell;
 mod checkpoint;
 mod error;
+mod loads;
 mod network;
 mod port;
+mod real;
 mod run;
+mod sheet_edge;
 mod source;
+#[cfg(test)]
+mod tests;
 
 pub use checkpoint::Checkpoint;
 pub use error::TlmError;
+pub use loads::{Loads, Resistor};
 pub use network::{Network, NetworkSettings, StepLimit};
+pub use real::Real;
 pub use run::{Record, Run};
 pub use source::Pulse;
 

@@ -1,7 +1,7 @@
 //! The field in time: scatter, connect, drive and read the port.
 
 use super::blocks::{LANES, Reflected, Scatter, State};
-use super::{Network, Pulse, TlmError};
+use super::{Network, Pulse, Real, TlmError};
 use crate::task::Task;
 use rayon::prelude::*;
 use std::time::Instant;
@@ -51,27 +51,27 @@ impl Record {
 
 /// A run of the field in a network.
 #[derive(Clone, Debug)]
-pub struct Run<'a> {
-    pub(super) network: &'a Network,
+pub struct Run<'a, T> {
+    pub(super) network: &'a Network<T>,
     pub(super) pulse: Pulse,
-    pub(super) states: Vec<State>,
-    pub(super) reflected: Vec<Reflected>,
+    pub(super) states: Vec<State<T>>,
+    pub(super) reflected: Vec<Reflected<T>>,
     /// Edge voltages; one more than there are edges, always zero.
-    pub(super) voltages: Vec<f32>,
+    pub(super) voltages: Vec<T>,
     pub(super) record: Record,
     pub(super) seconds: f64,
 }
 
-impl<'a> Run<'a> {
+impl<'a, T: Real> Run<'a, T> {
     /// A run that begins with no field.
     #[must_use]
-    pub fn new(network: &'a Network, pulse: Pulse) -> Self {
+    pub fn new(network: &'a Network<T>, pulse: Pulse) -> Self {
         Self {
             network,
             pulse,
-            states: vec![[[0.0; LANES]; 9]; network.blocks.len()],
-            reflected: vec![[[0.0; LANES]; 6]; network.blocks.len()],
-            voltages: vec![0.0; network.n_edges + 1],
+            states: vec![[[T::default(); LANES]; 9]; network.blocks.len()],
+            reflected: vec![[[T::default(); LANES]; 6]; network.blocks.len()],
+            voltages: vec![T::default(); network.n_edges + 1],
             record: Record { dt: network.dt, ..Record::default() },
             seconds: 0.0,
         }
@@ -100,28 +100,46 @@ impl<'a> Run<'a> {
     /// # Errors
     /// [`TlmError::Cancelled`]; what was computed stays.
     pub fn advance(&mut self, n_steps: usize, task: &Task) -> Result<(), TlmError> {
-        for step in 0..n_steps {
-            if step.is_multiple_of(STRIDE) {
-                task.check()?;
+        let started = Instant::now();
+        // Once among the threads of the pool, which is much of the time of a step in a small mesh.
+        let result = rayon::scope(|_| {
+            for step in 0..n_steps {
+                if step.is_multiple_of(STRIDE) {
+                    task.check()?;
+                }
+                self.step();
             }
-            let started = Instant::now();
-            self.step();
-            self.seconds += started.elapsed().as_secs_f64();
-        }
-        Ok(())
+            Ok(())
+        });
+        self.seconds += started.elapsed().as_secs_f64();
+        result
+    }
+
+    #[cfg(test)]
+    pub(super) fn states_mut(&mut self) -> &mut [State<T>] {
+        &mut self.states
+    }
+
+    #[cfg(test)]
+    pub(super) fn reflected(&self) -> &[Reflected<T>] {
+        &self.reflected
+    }
+
+    #[cfg(test)]
+    pub(super) fn voltages(&self) -> &[T] {
+        &self.voltages
     }
 
     fn step(&mut self) {
         let incident = self.pulse.at(self.record.total.len() as f64 * self.network.dt);
-        #[allow(clippy::cast_possible_truncation, reason = "the field runs in single precision")]
-        let observed = self.scatter(incident as f32);
+        let observed = self.scatter(T::new(incident));
         self.connect();
         self.record.incident.push(incident);
         self.record.total.push(observed);
     }
 
     /// All cells; returns the total voltage at the port.
-    fn scatter(&mut self, signal: f32) -> f64 {
+    fn scatter(&mut self, signal: T) -> f64 {
         let arch = pulp::Arch::new();
         let voltages = &self.voltages[..];
         let n_inner = self.network.blocks.len() - self.network.boundary.len();
@@ -157,7 +175,7 @@ impl<'a> Run<'a> {
             for ((voltage, bounds), weight) in voltages.iter_mut().zip(starts.windows(2)).zip(&network.weights[first..])
             {
                 let ports = &network.places[bounds[0] as usize..bounds[1] as usize];
-                *voltage = weight * ports.iter().map(|&p| reflected[p as usize]).sum::<f32>();
+                *voltage = *weight * ports.iter().map(|&p| reflected[p as usize]).sum::<T>();
             }
         });
     }

@@ -28,8 +28,8 @@ const SEGMENTS: usize = 10;
 
 impl Group {
     /// The variants of a project's antenna.
-    pub(super) fn of_project(project: Project) -> Self {
-        Self::new("s11", "Reflection".to_owned(), project)
+    pub(super) fn of_project(project: Project, file: &str) -> Self {
+        Self::new("s11", format!("Reflection, {file}"), project)
     }
 
     /// The antennas of the paper's figures 10 to 13 (bends) and 14 to 16 (shapes of section VI).

@@ -26,7 +26,7 @@ use std::time::Duration;
 
 pub(super) fn run(args: &CompareArgs, task: &Task) -> Result<()> {
     let (groups, dir) = match (&args.file, args.paper) {
-        (Some(path), _) => (vec![Group::of_project(file::read(path)?)], results_dir(path)),
+        (Some(path), _) => (vec![Group::of_project(file::read(path)?, &path.display().to_string())], results_dir(path)),
         (None, Some(which)) => (Group::of_paper(which), args.out.join("results")),
         (None, None) => unreachable!("one of them is required"),
     };
@@ -75,7 +75,8 @@ fn found_or_solved(
 fn write(group: &Group, runs: &[(&Variant, Result<Stored, String>)], out: &Path) -> Result<Vec<String>> {
     let mut files = Vec::new();
     let mut series = Vec::new();
-    for (k, (variant, stored)) in runs.iter().enumerate() {
+    let mut colors = palette::DISTINCT.into_iter().cycle();
+    for (variant, stored) in runs {
         let Ok(stored) = stored else { continue };
         let sweep = stored.sweep();
         let name = format!("{}_{}.s1p", group.name, variant.name);
@@ -86,9 +87,11 @@ fn write(group: &Group, runs: &[(&Variant, Result<Stored, String>)], out: &Path)
         touchstone::write(&sweep, &remarks, &out.join(&name))?;
         files.push(name);
         let points = sweep.freqs.iter().zip(sweep.db()).map(|(f, y)| Point { x: f / GHZ, y: Ok(y) }).collect();
-        let style = if variant.is_reference { Style::Dashed } else { Style::Plain };
-        let color =
-            if variant.is_reference { palette::REFERENCE } else { palette::DISTINCT[k % palette::DISTINCT.len()] };
+        let (style, color) = if variant.is_reference {
+            (Style::Dashed, palette::REFERENCE)
+        } else {
+            (Style::Plain, colors.next().unwrap_or(palette::REFERENCE))
+        };
         series.push(Series { name: variant.title.to_owned(), color, style, points });
     }
     if series.is_empty() {

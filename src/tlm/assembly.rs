@@ -1,0 +1,271 @@
+//! A mesh as the field sees it: cells in their final order, which ports are live, materials, boundaries, loads.
+
+use super::TlmError;
+use super::blocks::{A_INVERSE, ADMITTANCE, LOSS, MAGNETIC_LOSS, OBSERVATION, SOURCE, triangle};
+use super::cell::{Cell, EDGES, face_mass};
+use super::loads::{Absorber, Loads};
+use super::port::PortMode;
+use super::sheet_edge;
+use crate::geometry::{DVec3, VertexId};
+use crate::tet::{FaceRole, TetMesh, face_key};
+use crate::units::{C0, ETA0};
+use nalgebra::{Matrix3, Matrix6};
+use rayon::prelude::*;
+use std::collections::{HashMap, HashSet};
+use std::f64::consts::TAU;
+
+/// A mesh prepared for assembly: cells in their final order, vertices ascending.
+pub(super) struct Assembly<'a> {
+    mesh: &'a TetMesh,
+    /// Cells: corners ascending, and the number in the mesh.
+    pub(super) cells: Vec<([VertexId; 4], usize)>,
+    /// Cells before this one have no boundary face.
+    pub(super) n_inner: usize,
+    faces: BoundaryFaces,
+    loads: Loads,
+    absorber: Option<Absorber>,
+    /// Vertices at the edges of sheets, where the field is singular; empty without correction.
+    rim: HashSet<VertexId>,
+    loss_freq: f64,
+}
+
+/// What the marked faces mean.
+struct BoundaryFaces {
+    conducting: HashSet<[VertexId; 2]>,
+    /// The port, if the mesh has one.
+    port: Option<Port>,
+    outer: HashSet<[VertexId; 3]>,
+    /// Conductance of faces of lossy sheets, in units of the free-space admittance.
+    sheets: HashMap<[VertexId; 3], f64>,
+}
+
+struct Port {
+    mode: PortMode,
+    /// Its edges, and the region behind it, in which they are live.
+    edges: HashSet<[VertexId; 2]>,
+    region: usize,
+    /// By face: place in `mode.faces`.
+    faces: HashMap<[VertexId; 3], usize>,
+}
+
+fn edges_of([a, b, c]: [VertexId; 3]) -> [[VertexId; 2]; 3] {
+    [[a, b], [a, c], [b, c]]
+}
+
+/// The faces of a role, corners ascending.
+fn faces_with(mesh: &TetMesh, role: FaceRole) -> impl Iterator<Item = [VertexId; 3]> {
+    mesh.faces.iter().filter(move |f| mesh.groups[f.group].role == role).map(|f| face_key(f.vertices))
+}
+
+impl BoundaryFaces {
+    fn new(mesh: &TetMesh, loads: &Loads) -> Result<Self, TlmError> {
+        let resistance = |group: usize| loads.sheet_resistance(&mesh.groups[group].name);
+        let conductors = || mesh.faces.iter().filter(|f| mesh.groups[f.group].role == FaceRole::Conductor);
+        let perfect = conductors().filter(|f| resistance(f.group).is_none());
+        let lossy = conductors().filter_map(|f| Some((face_key(f.vertices), ETA0 / resistance(f.group)?)));
+        Ok(Self {
+            conducting: perfect.flat_map(|f| edges_of(face_key(f.vertices))).collect(),
+            port: Port::new(mesh, loads)?,
+            outer: faces_with(mesh, FaceRole::Outer).collect(),
+            sheets: lossy.collect(),
+        })
+    }
+
+    fn is_boundary(&self, corners: [VertexId; 4], region: usize) -> bool {
+        faces_of(corners).into_iter().any(|(_, f)| {
+            self.outer.contains(&f) || self.sheets.contains_key(&f) || self.port_face(f, region).is_some()
+        })
+    }
+
+    /// The port with the place of a face in it, if the face is one of its and the region lies behind it.
+    fn port_face(&self, face: [VertexId; 3], region: usize) -> Option<(&PortMode, usize)> {
+        let port = self.port.as_ref().filter(|p| p.region == region)?;
+        Some((&port.mode, *port.faces.get(&face)?))
+    }
+}
+
+impl Port {
+    fn new(mesh: &TetMesh, loads: &Loads) -> Result<Option<Self>, TlmError> {
+        let keys: Vec<[VertexId; 3]> = faces_with(mesh, FaceRole::Port).collect();
+        let (Some(first), Some(marked)) =
+            (keys.first(), mesh.faces.iter().find(|f| mesh.groups[f.group].role == FaceRole::Port))
+        else {
+            return Ok(None);
+        };
+        // The cell behind a face sees its corners as the mark lists them.
+        let same = |f: [VertexId; 3]| (0..3).any(|k| f == [0, 1, 2].map(|i| marked.vertices[(i + k) % 3]));
+        let behind = mesh.tets.iter().find(|t| (0..4).any(|i| face_key(t.face(i)) == *first && same(t.face(i))));
+        let region = behind.ok_or(TlmError::NoPort)?.region;
+        let admittance = (mesh.regions[region.index()].eps_r / loads.mu_r(region)).sqrt();
+        let mode = PortMode::new(&keys, &mesh.vertices, admittance, &mesh.groups[marked.group].name)?;
+        Ok(Some(Self {
+            edges: keys.iter().copied().flat_map(edges_of).collect(),
+            region: region.index(),
+            faces: mode.faces.iter().enumerate().map(|(k, f)| (f.vertices, k)).collect(),
+            mode,
+        }))
+    }
+}
+
+/// The four faces of ascending corners with the places of their edges among the six.
+fn faces_of(c: [VertexId; 4]) -> [([usize; 3], [VertexId; 3]); 4] {
+    [
+        ([3, 4, 5], [c[1], c[2], c[3]]),
+        ([1, 2, 5], [c[0], c[2], c[3]]),
+        ([0, 2, 4], [c[0], c[1], c[3]]),
+        ([0, 1, 3], [c[0], c[1], c[2]]),
+    ]
+}
+
+/// The numbers of a cell's lane: coefficients, and terms of boundary faces where its block has such.
+pub(super) struct LaneTerms {
+    pub(super) coefficients: [f64; 35],
+    pub(super) boundary: [f64; 33],
+}
+
+impl<'a> Assembly<'a> {
+    /// * `edge_correction`: whether cells at the edges of sheets are corrected for the singular field.
+    pub(super) fn new(
+        mesh: &'a TetMesh,
+        loads: &Loads,
+        edge_correction: bool,
+        loss_freq: f64,
+    ) -> Result<Self, TlmError> {
+        let faces = BoundaryFaces::new(mesh, loads)?;
+        let (lo, hi) =
+            mesh.vertices.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), &p| (lo.min(p), hi.max(p)));
+        let scale = 1023.0 / (hi - lo).max_element();
+        let mut keyed: Vec<(bool, u32, usize)> = (0..mesh.tets.len())
+            .into_par_iter()
+            .map(|t| {
+                let tet = &mesh.tets[t];
+                let is_boundary = faces.is_boundary(ascending(tet.vertices), tet.region.index());
+                (is_boundary, morton((center(mesh, t) - lo) * scale), t)
+            })
+            .collect();
+        keyed.par_sort_unstable();
+        let n_inner = keyed.iter().take_while(|k| !k.0).count();
+        let cells = keyed.into_iter().map(|(_, _, t)| (ascending(mesh.tets[t].vertices), t)).collect();
+        let rim = if edge_correction { sheet_edge::rim(mesh) } else { HashSet::new() };
+        let absorber = loads.absorber.and_then(|thickness| Absorber::new(mesh, thickness));
+        Ok(Self { mesh, cells, n_inner, faces, loads: loads.clone(), absorber, rim, loss_freq })
+    }
+
+    /// The mode of the port, if there is one.
+    pub(super) fn port(&self) -> Option<&PortMode> {
+        self.faces.port.as_ref().map(|p| &p.mode)
+    }
+
+    /// Conductance of the resistors at an edge, in units of the free-space admittance.
+    pub(super) fn conductance(&self, edge: [VertexId; 2]) -> f64 {
+        self.loads.resistors.iter().filter(|r| r.edge == edge).map(|r| ETA0 / r.resistance).sum()
+    }
+
+    fn region(&self, tet: usize) -> usize {
+        self.mesh.tets[tet].region.index()
+    }
+
+    /// The ports of a cell that are in use.
+    pub(super) fn free(&self, corners: [VertexId; 4], tet: usize) -> [bool; 6] {
+        let shorted = self.faces.port.as_ref().filter(|port| port.region != self.region(tet));
+        EDGES.map(|(i, j)| {
+            let edge = [corners[i], corners[j]];
+            !self.faces.conducting.contains(&edge) && shorted.is_none_or(|port| !port.edges.contains(&edge))
+        })
+    }
+
+    pub(super) fn cell(&self, k: usize) -> Cell {
+        let (corners, tet) = self.cells[k];
+        let points = corners.map(|v| self.mesh.vertices[v.index()]);
+        let region = self.mesh.tets[tet].region;
+        let (mut eps_r, mut mu_r) = (self.mesh.regions[region.index()].eps_r, self.loads.mu_r(region));
+        if corners.iter().any(|v| self.rim.contains(v)) {
+            (eps_r, mu_r) = (eps_r * sheet_edge::PERMITTIVITY, mu_r / sheet_edge::RELUCTIVITY);
+        }
+        Cell::new(points, eps_r, mu_r, self.free(corners, tet))
+    }
+
+    /// What boundary faces add to a cell: conductances of its ports, and how the port drives and reads them.
+    fn boundary_terms(&self, corners: [VertexId; 4], tet: usize) -> (Matrix6<f64>, [f64; 6], [f64; 6]) {
+        let (mut conductance, mut source, mut observation) = (Matrix6::zeros(), [0.0; 6], [0.0; 6]);
+        let region = self.mesh.tets[tet].region;
+        for (places, face) in faces_of(corners) {
+            let mut add = |matrix: &Matrix3<f64>| {
+                for (a, b) in (0..3).flat_map(|a| (0..3).map(move |b| (a, b))) {
+                    conductance[(places[a], places[b])] += matrix[(a, b)];
+                }
+            };
+            let mass = || face_mass(face.map(|v| self.mesh.vertices[v.index()])).0;
+            if self.faces.outer.contains(&face) {
+                add(&(mass() * (self.mesh.regions[region.index()].eps_r / self.loads.mu_r(region)).sqrt()));
+            } else if let Some(&sheet) = self.faces.sheets.get(&face) {
+                // Half of it for the cell on each side.
+                add(&(mass() * (sheet / 2.0)));
+            } else if let Some((port, f)) = self.faces.port_face(face, region.index()) {
+                add(&port.faces[f].conductance);
+                for (a, &place) in places.iter().enumerate() {
+                    source[place] += 2.0 * port.faces[f].mode[a];
+                    observation[place] += port.faces[f].mode[a] / port.admittance;
+                }
+            }
+        }
+        (conductance, source, observation)
+    }
+
+    /// * `x`: half a time step, m.
+    pub(super) fn terms(&self, k: usize, x: f64, at_boundary: bool) -> LaneTerms {
+        let (corners, tet) = self.cells[k];
+        let cell = self.cell(k);
+        let absorbed = self.absorber.map_or(0.0, |a| a.rate(center(self.mesh, tet)) * x);
+        // Conductivity over permittivity, as a share of C/x.
+        let kappa = TAU * self.loss_freq / C0 * self.mesh.regions[self.region(tet)].tan_delta * x + absorbed;
+        let mut loss = cell.capacitance * (kappa / x);
+        let mut lane = LaneTerms { coefficients: [0.0; 35], boundary: [0.0; 33] };
+        let (faces, source, observation) = self.boundary_terms(corners, tet);
+        if at_boundary {
+            loss += faces;
+        } else {
+            lane.coefficients[LOSS] = kappa / (1.0 + kappa);
+        }
+        let c = cell.coefficients(x, &loss, absorbed);
+        lane.coefficients[MAGNETIC_LOSS] = absorbed / (1.0 + absorbed);
+        for a in 0..6 {
+            lane.coefficients[ADMITTANCE + a] = c.y[a];
+            for b in 0..=a {
+                lane.coefficients[triangle(a, b)] = c.d[(a, b)];
+                if at_boundary && c.y[a] > 0.0 && c.y[b] > 0.0 {
+                    lane.boundary[triangle(a, b)] = loss[(a, b)];
+                }
+            }
+            if at_boundary && c.y[a] > 0.0 {
+                lane.boundary[SOURCE + a] = source[a];
+                lane.boundary[OBSERVATION + a] = observation[a];
+            }
+        }
+        for (i, j) in (0..3).flat_map(|i| (0..=i).map(move |j| (i, j))) {
+            lane.coefficients[A_INVERSE + triangle(i, j)] = c.a_inverse[(i, j)];
+        }
+        lane
+    }
+}
+
+fn center(mesh: &TetMesh, tet: usize) -> DVec3 {
+    mesh.corners(tet).iter().sum::<DVec3>() / 4.0
+}
+
+fn ascending(mut corners: [VertexId; 4]) -> [VertexId; 4] {
+    corners.sort_unstable();
+    corners
+}
+
+fn morton(cell: DVec3) -> u32 {
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "scaled to ten bits")]
+    let spread = |x: f64| {
+        let mut x = (x as u32).min(1023);
+        for (shift, mask) in [(16, 0x0300_00ff), (8, 0x0300_f00f), (4, 0x030c_30c3), (2, 0x0924_9249)] {
+            x = (x | x << shift) & mask;
+        }
+        x
+    };
+    spread(cell.x) | spread(cell.y) << 1 | spread(cell.z) << 2
+}
