@@ -47,7 +47,7 @@ const SHORTENED: f64 = 0.87;
 const STEP_OVER_LAYER: f64 = 0.127;
 const STEP_OVER_PIN: f64 = 0.165;
 /// Bytes for each cell: coefficients and state of the field, and the mesh beside them.
-const BYTES_PER_TET: f64 = 1000.0;
+const BYTES_PER_TET: f64 = 800.0;
 /// Meshing and preparing one cell, s.
 const SECONDS_PER_TET: f64 = 20e-6;
 /// Places along each side of the ground where the map's curvature is sampled.
