@@ -26,6 +26,7 @@ pub mod csv;
 mod decimal;
 mod error;
 mod export;
+pub mod ffs;
 pub mod gltf;
 mod import;
 pub mod msh;

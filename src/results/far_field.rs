@@ -90,6 +90,14 @@ impl FarField {
         Self { freq, theta: grid.theta(), phi: grid.phi(), e_theta, e_phi, powers }
     }
 
+    /// The field of a source larger by a factor; what the port takes is left as it is.
+    pub(super) fn scaled(mut self, by: Complex<f64>) -> Self {
+        self.e_theta.iter_mut().chain(&mut self.e_phi).for_each(|e| *e *= by);
+        let Powers { lost, crossing, radiated, .. } = &mut self.powers;
+        [lost, crossing, radiated].into_iter().for_each(|p| *p *= by.norm_sqr());
+        self
+    }
+
     fn grid(&self) -> Grid {
         Grid::new(self.theta.len() - 1)
     }

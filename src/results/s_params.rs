@@ -65,7 +65,7 @@ pub fn sweep(record: &Record, line: &FeedLine, freqs: &[f64]) -> Sweep {
 }
 
 /// `sum x_n exp(-j 2 pi cycles n)`
-fn transform(series: &[f64], cycles: f64) -> Complex<f64> {
+pub(super) fn transform(series: &[f64], cycles: f64) -> Complex<f64> {
     series.iter().enumerate().map(|(n, &x)| Complex::from_polar(x, -TAU * (cycles * n as f64).fract())).sum()
 }
 
