@@ -194,7 +194,12 @@ pub struct SolveArgs {
     /// Lower and upper end of the band, GHz [default: two thirds to four thirds of the patch's cavity resonance]
     #[arg(long, value_names = ["LO", "HI"], num_args = 2)]
     pub(super) band: Option<Vec<f64>>,
-    /// Write S11 as table, Touchstone and plot into this folder; made where it is missing
+    /// Frequencies whose patterns are gathered and written, GHz [default: 41 over the band are gathered, the one nearest
+    /// to the resonance is written]
+    #[arg(long, value_name = "F", num_args = 1..)]
+    pub(super) pattern_ghz: Vec<f64>,
+    /// Write S11 as table, Touchstone and plot, and patterns as tables, plot and far-field source into this folder; made
+    /// where it is missing
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
     /// Print JSON

@@ -1,16 +1,16 @@
-//! From a project to S11: mesh, network, run, sweep.
+//! From a project to S11 and patterns: mesh, network, run, sweep, far fields.
 
 use super::PipelineError;
 use super::mesh::{MeshSettings, Meshed, Shape, mesh};
 use crate::project::Project;
-use crate::results::{FeedLine, Sweep, frequencies, sweep};
+use crate::results::{FarField, FeedLine, Sweep, far_fields, frequencies, sweep};
 use crate::task::Task;
-use crate::tlm::{Network, NetworkSettings, Pulse, Record, Run, StepLimit, TlmError};
+use crate::tlm::{FieldRecorder, Huygens, Network, NetworkSettings, Pulse, Record, Run, StepLimit, TlmError};
 use crate::units::from_mm;
 use std::time::Instant;
 
 /// What is solved.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SolveSettings {
     /// The mesh.
     pub mesh: MeshSettings,
@@ -20,13 +20,20 @@ pub struct SolveSettings {
     pub decay_db: f64,
     /// It stops after this time at the latest, s.
     pub longest: f64,
+    /// Frequencies whose far fields are found, Hz.
+    pub pattern_freqs: Vec<f64>,
 }
+
+/// Far fields over a band.
+const N_PATTERNS: f64 = 41.0;
 
 impl SolveSettings {
     /// The usual stop rules.
     #[must_use]
     pub fn new(mesh: MeshSettings, band: [f64; 2]) -> Self {
-        Self { mesh, band, decay_db: 40.0, longest: 4e-9 }
+        let [lo, hi] = band;
+        let pattern_freqs = frequencies(lo, hi, (hi - lo) / (N_PATTERNS - 1.0));
+        Self { mesh, band, decay_db: 40.0, longest: 4e-9, pattern_freqs }
     }
 }
 
@@ -37,6 +44,8 @@ pub struct Solved {
     pub meshed: Meshed,
     /// S11 at the ground's top, 50 ohm.
     pub sweep: Sweep,
+    /// Far fields by ascending frequency, for an incident wave of 1 W.
+    pub far_fields: Vec<FarField>,
     /// The port's time series.
     pub record: Record,
     /// The port's impedance as meshed, ohm: how well the line's circles are meshed.
@@ -49,6 +58,16 @@ pub struct Solved {
     pub speed: f64,
     /// Time spent, s.
     pub seconds: f64,
+}
+
+impl Solved {
+    /// The far field at the frequency nearest to the resonance, or to the middle of the band where there is none.
+    #[must_use]
+    pub fn at_resonance(&self) -> Option<&FarField> {
+        let middle = || self.sweep.freqs.get(self.sweep.freqs.len() / 2).copied();
+        let wanted = self.sweep.resonance().map(|r| r.freq).or_else(middle)?;
+        self.far_fields.iter().min_by(|a, b| (a.freq - wanted).abs().total_cmp(&(b.freq - wanted).abs()))
+    }
 }
 
 /// Impedance that S11 refers to, ohm.
@@ -72,7 +91,9 @@ pub fn solve(project: &Project, shape: Shape, settings: &SolveSettings, task: &T
     let how = NetworkSettings { step: StepLimit::Clip(CLIPPED), ..NetworkSettings::new(pulse.center) };
     let network = Network::<f32>::new(&meshed.mesh, &how, task)?;
     let port_impedance = network.port_impedance.ok_or(TlmError::NoPort)?;
-    let mut run = Run::new(&network, pulse);
+    let huygens = Huygens::new(&meshed.mesh)?;
+    let fields = FieldRecorder::new(&meshed.mesh, &network, &huygens, &settings.pattern_freqs)?;
+    let mut run = Run::new(&network, pulse).with_fields(fields);
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some ten thousand steps")]
     let steps = |time: f64| (time / network.dt).ceil() as usize;
     let n_most = steps(settings.longest);
@@ -97,7 +118,9 @@ pub fn solve(project: &Project, shape: Shape, settings: &SolveSettings, task: &T
         eps_r: params.sheath.eps_r,
         reference: REFERENCE,
     };
+    let fields = run.fields().map(FieldRecorder::fields).unwrap_or_default();
     Ok(Solved {
+        far_fields: far_fields(&huygens.surface, &fields, run.record(), port_impedance),
         sweep: sweep(run.record(), &line, &frequencies(lo, hi, RESOLUTION)),
         record: run.record().clone(),
         port_impedance,
