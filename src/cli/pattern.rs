@@ -35,8 +35,8 @@ pub(super) struct PatternReport {
     total_efficiency: Option<f64>,
     /// Radiated (far field) and lost power over the accepted one.
     power_balance: Option<f64>,
-    /// Radiated power in the far field over the power through the surface around the antenna.
-    far_over_near: f64,
+    /// The same with the power through a surface around the antenna for the one in the far field.
+    near_power_balance: Option<f64>,
 }
 
 impl PatternReport {
@@ -57,7 +57,7 @@ impl PatternReport {
             efficiency: field.efficiency(),
             total_efficiency: field.total_efficiency(),
             power_balance: field.balance(),
-            far_over_near: field.powers.radiated / field.powers.crossing,
+            near_power_balance: field.near_balance(),
         }
     }
 
@@ -103,6 +103,7 @@ pub(super) fn write(solved: &Solved, fields: &[&FarField], name: &str, dir: &Pat
             or_nan(f.total_efficiency()),
             f.front_to_back(),
             or_nan(f.balance()),
+            or_nan(f.near_balance()),
         ]
     });
     let header = [
@@ -114,6 +115,7 @@ pub(super) fn write(solved: &Solved, fields: &[&FarField], name: &str, dir: &Pat
         "total_efficiency",
         "front_to_back_db",
         "power_balance",
+        "near_power_balance",
     ];
     csv::write_table(&dir.join("radiation.csv"), &header, rows)?;
     let cuts: Vec<(f64, Cut, Cut)> = fields.iter().map(|f| (f.freq, f.cut(CutPlane::E), f.cut(CutPlane::H))).collect();

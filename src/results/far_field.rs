@@ -194,6 +194,13 @@ impl FarField {
         (self.powers.accepted > 0.0).then(|| (self.powers.radiated + self.powers.lost) / self.powers.accepted)
     }
 
+    /// The same with the power through the closed surface for that in the far field: the cells balance it exactly, so what
+    /// is missing is the port's or the run's; `None` where nothing is accepted.
+    #[must_use]
+    pub fn near_balance(&self) -> Option<f64> {
+        (self.powers.accepted > 0.0).then(|| (self.powers.crossing + self.powers.lost) / self.powers.accepted)
+    }
+
     /// The directivity around a plane, every degree.
     #[must_use]
     pub fn cut(&self, plane: CutPlane) -> Cut {
