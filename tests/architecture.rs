@@ -15,7 +15,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("distortion", &["antenna", "cage", "deform", "geometry", "task", "units"]),
     ("tet", &["antenna", "geometry", "task", "units"]),
     ("tlm", &["geometry", "task", "tet", "units"]),
-    ("results", &["task", "tlm", "units"]),
+    ("results", &["geometry", "task", "tlm", "units"]),
     ("io", &["geometry", "results", "tet", "tlm", "units"]),
     ("project", &["antenna", "cage", "geometry", "io", "units"]),
     ("render", &["geometry", "units"]),

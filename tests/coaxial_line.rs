@@ -151,13 +151,13 @@ fn a_resumed_run_has_the_bits_of_an_uninterrupted_one_and_belongs_to_its_network
     let path = folder.path().join("line.checkpoint");
     checkpoint::write(&first.checkpoint(), &path).unwrap();
     let kept = checkpoint::read(&path).unwrap();
-    let mut resumed = Run::resume(&open, pulse, &kept).unwrap();
+    let mut resumed = Run::new(&open, pulse).resumed(&kept).unwrap();
     resumed.advance(600, &task).unwrap();
     let (end, expected) = (resumed.checkpoint(), straight.checkpoint());
     assert!(expected.record.total.iter().any(|v| v.abs() > 0.1), "there is a field");
     assert_eq!((end.record, end.field), (expected.record, expected.field), "the same bits");
     let shorted = network(FaceRole::Conductor);
-    for refused in [Run::resume(&shorted, pulse, &kept), Run::resume(&open, Pulse::new(5e9, 16e9).unwrap(), &kept)] {
-        assert_eq!(refused.unwrap_err(), TlmError::ForeignCheckpoint, "another end, another band");
+    for other in [Run::new(&shorted, pulse), Run::new(&open, Pulse::new(5e9, 16e9).unwrap())] {
+        assert_eq!(other.resumed(&kept).unwrap_err(), TlmError::ForeignCheckpoint, "another end, another band");
     }
 }

@@ -205,7 +205,12 @@ pub struct SolveArgs {
     /// Time between checkpoints of a long run, seconds; Ctrl-C leaves one in any case
     #[arg(long, value_name = "SECONDS", default_value_t = 60)]
     pub(super) checkpoint_every: u64,
-    /// Write S11 as table, Touchstone and plot into this folder; made where it is missing
+    /// Frequencies whose patterns are gathered and written, GHz [default: 41 over the band are gathered, the one nearest
+    /// to the resonance is written]
+    #[arg(long, value_name = "F", num_args = 1..)]
+    pub(super) pattern_ghz: Vec<f64>,
+    /// Write S11 as table, Touchstone and plot, and patterns as tables, plot and far-field source into this folder; made
+    /// where it is missing
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
     /// Print JSON

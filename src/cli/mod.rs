@@ -16,6 +16,7 @@ mod export;
 mod info;
 mod mesh;
 mod new;
+mod pattern;
 mod plot;
 mod progress;
 mod report;

@@ -1,34 +1,56 @@
-//! `solve`: the antenna's reflection by transmission line modelling.
+//! `solve`: the antenna's reflection and radiation by transmission line modelling.
 
 use super::args::SolveArgs;
+use super::pattern::{self, PatternReport};
 use super::plot::{Axis, Figure, Panel, Point, Series, Style};
 use super::runs::{self, Keep, Resume};
 use super::study::palette;
 use crate::io::{csv, touchstone};
 use crate::pipeline::{Solved, results_dir};
 use crate::project::file;
-use crate::results::Resonance;
+use crate::results::{FarField, Resonance};
 use crate::task::Task;
 use crate::units::GHZ;
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use serde::Serialize;
 use std::path::Path;
 use std::time::Duration;
 
 pub(super) fn run(args: &SolveArgs, task: &Task) -> Result<()> {
     let project = file::read(&args.file)?;
-    let settings = runs::settings(&project, args.density.into(), args.band.as_deref(), args.stop);
+    let mut settings = runs::settings(&project, args.density.into(), args.band.as_deref(), args.stop);
+    if !args.pattern_ghz.is_empty() {
+        settings.pattern_freqs = pattern_freqs(&args.pattern_ghz, settings.band)?;
+    }
     let name = args.file.display();
     let dir = results_dir(&args.file);
     let resume = if args.resume { Resume::Must } else { Resume::Never };
     let keep = Keep { dir: &dir, resume, every: Duration::from_secs(args.checkpoint_every) };
     let (solved, stored) =
         runs::solve(&project, args.shape.into(), &settings, keep, task).with_context(|| format!("solving {name}"))?;
+    let written: Vec<&FarField> = match args.pattern_ghz.is_empty() {
+        true => solved.at_resonance().into_iter().collect(),
+        false => solved.far_fields.iter().collect(),
+    };
     let mut files = vec![stored.job().result_path(&dir).display().to_string()];
-    files
-        .extend(args.out.as_deref().map(|dir| write(&solved, &name.to_string(), dir)).transpose()?.unwrap_or_default());
+    if let Some(dir) = args.out.as_deref() {
+        files.extend(write(&solved, &name.to_string(), dir)?);
+        files.extend(pattern::write(&solved, &written, &name.to_string(), dir)?);
+    }
     let report = Report::new(&solved, files);
     super::print(&if args.json { serde_json::to_string_pretty(&report)? } else { report.text() })
+}
+
+/// The frequencies of patterns in Hz, ascending: the pulse holds those of the band only.
+fn pattern_freqs(given_ghz: &[f64], [lo, hi]: [f64; 2]) -> Result<Vec<f64>> {
+    let mut freqs: Vec<f64> = given_ghz.iter().map(|f| f * GHZ).collect();
+    freqs.sort_by(f64::total_cmp);
+    match freqs.iter().find(|f| !(lo..=hi).contains(*f)) {
+        None => Ok(freqs),
+        Some(f) => {
+            bail!("no pattern at {} GHz: it lies outside the band from {} to {} GHz", f / GHZ, lo / GHZ, hi / GHZ)
+        }
+    }
 }
 
 /// Writes table, Touchstone file and plot; returns their names.
@@ -97,6 +119,8 @@ struct Report {
     is_settled: bool,
     tet_steps_per_second: f64,
     seconds: f64,
+    /// Null where no pattern was gathered.
+    pattern: Option<PatternReport>,
     files: Vec<String>,
 }
 
@@ -122,6 +146,7 @@ impl Report {
             is_settled: solved.is_settled,
             tet_steps_per_second: solved.speed,
             seconds: solved.seconds,
+            pattern: solved.at_resonance().map(PatternReport::new),
             files,
         }
     }
@@ -142,6 +167,7 @@ impl Report {
             ),
             format!("time          {:.1} s, {:.1} million tet-steps/s", self.seconds, self.tet_steps_per_second / 1e6),
         ];
+        lines.extend(self.pattern.iter().flat_map(PatternReport::text));
         if !self.files.is_empty() {
             lines.push(format!("wrote         {}", self.files.join(", ")));
         }

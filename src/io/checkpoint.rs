@@ -1,8 +1,8 @@
 //! Checkpoints of a field run: a binary file that is whole or refused.
 //!
 //! Little-endian: magic `CNFTLMCP`, version (u32), fingerprint of the run it belongs to (32 bytes), time step and seconds
-//! spent (f64), numbers of steps and of field values (u64), incident and total voltages (f64), field (f32), and the
-//! SHA-256 of everything before. Whether it fits a run is for [`Run::resume`](crate::tlm::Run::resume) to say.
+//! spent (f64), numbers of steps, of field values and of sums (u64), incident and total voltages (f64), sums (pairs of
+//! f64), field (f32), and the SHA-256 of everything before. Whether it fits a run is for [`Run::resumed`](crate::tlm::Run::resumed) to say.
 
 use super::error::{ParseError, Place, read as read_bytes};
 use super::{IoError, write_atomic};
@@ -14,7 +14,7 @@ use std::path::Path;
 const VERSION: u32 = 1;
 const MAGIC: &[u8; 8] = b"CNFTLMCP";
 /// Bytes before the series.
-const HEAD: usize = 8 + 4 + 32 + 4 * 8;
+const HEAD: usize = 8 + 4 + 32 + 5 * 8;
 /// Bytes of the SHA-256 at the end.
 const DIGEST: usize = 32;
 
@@ -23,8 +23,8 @@ const DIGEST: usize = 32;
 /// # Errors
 /// [`IoError::System`].
 pub fn write(checkpoint: &Checkpoint, path: &Path) -> Result<(), IoError> {
-    let Checkpoint { fingerprint, seconds, record, field } = checkpoint;
-    let mut bytes = Vec::with_capacity(HEAD + 16 * record.total.len() + 4 * field.len() + DIGEST);
+    let Checkpoint { fingerprint, seconds, record, field, sums } = checkpoint;
+    let mut bytes = Vec::with_capacity(HEAD + 16 * (record.total.len() + sums.len()) + 4 * field.len() + DIGEST);
     bytes.extend(MAGIC);
     bytes.extend(VERSION.to_le_bytes());
     bytes.extend(fingerprint);
@@ -32,7 +32,8 @@ pub fn write(checkpoint: &Checkpoint, path: &Path) -> Result<(), IoError> {
     bytes.extend(seconds.to_le_bytes());
     bytes.extend((record.total.len() as u64).to_le_bytes());
     bytes.extend((field.len() as u64).to_le_bytes());
-    record.incident.iter().chain(&record.total).for_each(|v| bytes.extend(v.to_le_bytes()));
+    bytes.extend((sums.len() as u64).to_le_bytes());
+    record.incident.iter().chain(&record.total).chain(sums.as_flattened()).for_each(|v| bytes.extend(v.to_le_bytes()));
     field.iter().for_each(|v| bytes.extend(v.to_le_bytes()));
     let digest = Sha256::digest(&bytes);
     bytes.extend(digest);
@@ -66,18 +67,19 @@ fn parse(bytes: &[u8]) -> Result<Checkpoint, ParseError> {
     let mut number = || take(&mut rest).map(f64::from_le_bytes);
     let (dt, seconds) = number().zip(number()).ok_or_else(damaged)?;
     let mut count = || usize::try_from(u64::from_le_bytes(take(&mut rest)?)).ok();
-    let (n_steps, n_field) = count().zip(count()).ok_or_else(damaged)?;
-    let expected = n_steps.checked_mul(16).and_then(|s| n_field.checked_mul(4)?.checked_add(s));
-    if expected != Some(rest.len()) {
-        return Err(damaged());
-    }
-    let (series, field) = rest.split_at(16 * n_steps);
-    let mut series: Vec<f64> = series.as_chunks().0.iter().map(|c| f64::from_le_bytes(*c)).collect();
-    let total = series.split_off(n_steps);
+    let ((n_steps, n_field), n_sums) = count().zip(count()).zip(count()).ok_or_else(damaged)?;
+    let n_numbers = n_steps.checked_add(n_sums).and_then(|n| n.checked_mul(16));
+    let expected = n_numbers.and_then(|n| n_field.checked_mul(4)?.checked_add(n));
+    let Some(numbers) = n_numbers.filter(|_| expected == Some(rest.len())) else { return Err(damaged()) };
+    let (numbers, field) = rest.split_at(numbers);
+    let mut incident: Vec<f64> = numbers.as_chunks().0.iter().map(|c| f64::from_le_bytes(*c)).collect();
+    let sums = incident.split_off(2 * n_steps);
+    let total = incident.split_off(n_steps);
     Ok(Checkpoint {
         fingerprint,
         seconds,
-        record: Record { dt, incident: series, total },
+        record: Record { dt, incident, total },
+        sums: sums.as_chunks().0.to_vec(),
         field: field.as_chunks().0.iter().map(|c| f32::from_le_bytes(*c)).collect(),
     })
 }
@@ -96,7 +98,7 @@ mod tests {
     fn checkpoint() -> Checkpoint {
         let record =
             Record { dt: 1.5e-13, incident: vec![0.1, -0.2, 1e-300], total: vec![0.3, f64::MIN_POSITIVE, -0.0] };
-        Checkpoint { fingerprint: [7; 32], seconds: 1.25, record, field: vec![1.0, -2.5e-38, 3.0e7] }
+        Checkpoint { fingerprint: [7; 32], seconds: 1.25, record, field: vec![1.0, -2.5e-38, 3.0e7], sums: vec![[1.5, -2.5]] }
     }
 
     #[test]

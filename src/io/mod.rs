@@ -30,6 +30,7 @@ mod decimal;
 pub mod document;
 mod error;
 mod export;
+pub mod ffs;
 pub mod gltf;
 mod import;
 pub mod msh;

@@ -1,18 +1,22 @@
-//! From a project to S11: mesh, network, run, sweep.
+//! From a project to S11 and patterns: mesh, network, run, sweep, far fields.
 
 use super::PipelineError;
 use super::looks::Looks;
 use super::mesh::{MeshSettings, Meshed, Shape, mesh};
 use crate::project::Project;
-use crate::results::{FeedLine, FittedResonance, Sweep, continued_sweep, fit, fitted_resonance, frequencies, sweep};
+use crate::results::{
+    FarField, FeedLine, FittedResonance, Sweep, continued_sweep, far_fields, fit, fitted_resonance, frequencies, sweep,
+};
 use crate::task::Task;
-use crate::tlm::{Checkpoint, Network, NetworkSettings, Pulse, Record, Run, StepLimit, TlmError};
+use crate::tlm::{
+    Checkpoint, FieldRecorder, Huygens, Network, NetworkSettings, Pulse, Record, Run, StepLimit, TlmError,
+};
 use crate::units::from_mm;
 use serde::{Deserialize, Serialize};
 use std::time::{Duration, Instant};
 
 /// What is solved.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SolveSettings {
     /// The mesh.
@@ -23,13 +27,20 @@ pub struct SolveSettings {
     pub stop: StopRule,
     /// It stops after this time at the latest, s.
     pub longest: f64,
+    /// Frequencies whose far fields are found, Hz.
+    pub pattern_freqs: Vec<f64>,
 }
+
+/// Far fields over a band.
+const N_PATTERNS: f64 = 41.0;
 
 impl SolveSettings {
     /// The usual stop rule: the reflected voltage 40 dB down.
     #[must_use]
     pub fn new(mesh: MeshSettings, band: [f64; 2]) -> Self {
-        Self { mesh, band, stop: StopRule::Decay { db: 40.0 }, longest: 4e-9 }
+        let [lo, hi] = band;
+        let pattern_freqs = frequencies(lo, hi, (hi - lo) / (N_PATTERNS - 1.0));
+        Self { mesh, band, stop: StopRule::Decay { db: 40.0 }, longest: 4e-9, pattern_freqs }
     }
 }
 
@@ -56,6 +67,8 @@ pub struct Solved {
     pub meshed: Meshed,
     /// S11 at the ground's top, 50 ohm, of the record continued by its modes.
     pub sweep: Sweep,
+    /// Far fields by ascending frequency, for an incident wave of 1 W.
+    pub far_fields: Vec<FarField>,
     /// The port's time series.
     pub record: Record,
     /// The port's impedance as meshed, ohm: how well the line's circles are meshed.
@@ -72,6 +85,16 @@ pub struct Solved {
     pub speed: f64,
     /// Time spent, s.
     pub seconds: f64,
+}
+
+impl Solved {
+    /// The far field at the frequency nearest to the resonance, or to the middle of the band where there is none.
+    #[must_use]
+    pub fn at_resonance(&self) -> Option<&FarField> {
+        let middle = || self.sweep.freqs.get(self.sweep.freqs.len() / 2).copied();
+        let wanted = self.sweep.resonance().map(|r| r.freq).or_else(middle)?;
+        self.far_fields.iter().min_by(|a, b| (a.freq - wanted).abs().total_cmp(&(b.freq - wanted).abs()))
+    }
 }
 
 /// Impedance that S11 refers to, ohm.
@@ -152,17 +175,21 @@ pub fn solve(
     let network = Network::<f32>::new(&meshed.mesh, &how, task)?;
     let port_impedance = network.port_impedance.ok_or(TlmError::NoPort)?;
     let line = feed_line(project, port_impedance);
-    let mut run = match resume {
-        None => Run::new(&network, pulse),
-        Some(checkpoint) => Run::resume(&network, pulse, checkpoint)?,
-    };
+    let huygens = Huygens::new(&meshed.mesh)?;
+    let fields = FieldRecorder::new(&meshed.mesh, &network, &huygens, &settings.pattern_freqs)?;
+    let mut run = Run::new(&network, pulse).with_fields(fields);
+    if let Some(checkpoint) = resume {
+        run = run.resumed(checkpoint)?;
+    }
     let mut progress = Looks::new(settings, line, pulse, network.dt);
     drive(&mut run, &mut progress, watch, task)?;
     let record = run.record();
     let freqs = frequencies(lo, hi, RESOLUTION);
     // Without its rest a record cut off at 40 dB shifts the resonance by up to 0.05 %.
     let modes = fit(record, progress.n_pulse, hi).filter(|modes| modes.misfit < MISFIT);
+    let fields = run.fields().map(FieldRecorder::fields).unwrap_or_default();
     Ok(Solved {
+        far_fields: far_fields(&huygens.surface, &fields, record, port_impedance),
         sweep: modes.map_or_else(|| sweep(record, &line, &freqs), |m| continued_sweep(record, &m, &line, &freqs)),
         fitted: fitted_resonance(record, progress.n_pulse, settings.band),
         record: record.clone(),

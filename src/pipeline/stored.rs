@@ -36,7 +36,7 @@ impl Job {
     /// The job of solving a project's shape with this program.
     #[must_use]
     pub fn new(project: &Project, shape: Shape, settings: &SolveSettings) -> Self {
-        Self { project: relevant(project, shape), shape, settings: *settings, solver_version: SOLVER_VERSION }
+        Self { project: relevant(project, shape), shape, settings: settings.clone(), solver_version: SOLVER_VERSION }
     }
 
     /// SHA-256 of the job, hexadecimal.

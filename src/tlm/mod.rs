@@ -19,10 +19,12 @@ mod blocks;
 mod cell;
 mod checkpoint;
 mod error;
+mod huygens;
 mod loads;
 mod network;
 mod port;
 mod real;
+mod recorder;
 mod run;
 mod sheet_edge;
 mod source;
@@ -31,9 +33,11 @@ mod tests;
 
 pub use checkpoint::Checkpoint;
 pub use error::TlmError;
+pub use huygens::{ClosedSurface, Huygens};
 pub use loads::{Loads, Resistor};
 pub use network::{Network, NetworkSettings, StepLimit};
 pub use real::Real;
+pub use recorder::{FieldRecorder, SurfaceField};
 pub use run::{Record, Run};
 pub use source::Pulse;
 
