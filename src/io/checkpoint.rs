@@ -98,7 +98,13 @@ mod tests {
     fn checkpoint() -> Checkpoint {
         let record =
             Record { dt: 1.5e-13, incident: vec![0.1, -0.2, 1e-300], total: vec![0.3, f64::MIN_POSITIVE, -0.0] };
-        Checkpoint { fingerprint: [7; 32], seconds: 1.25, record, field: vec![1.0, -2.5e-38, 3.0e7], sums: vec![[1.5, -2.5]] }
+        Checkpoint {
+            fingerprint: [7; 32],
+            seconds: 1.25,
+            record,
+            field: vec![1.0, -2.5e-38, 3.0e7],
+            sums: vec![[1.5, -2.5]],
+        }
     }
 
     #[test]
