@@ -2,6 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test says what is wrong by panicking")]
 
+use conformant::pipeline::{Density, Job, MeshSettings, Shape, SolveSettings, results_dir};
+use conformant::project::{CompensationMode, file};
+use nalgebra::Complex;
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -68,7 +71,7 @@ impl Bench {
 fn help_names_every_command_and_wrong_usage_ends_with_2() {
     let bench = Bench::new();
     let help = bench.ok("--help");
-    for command in ["new", "deform", "compensate", "export", "verify", "study", "info", "apply"] {
+    for command in ["new", "deform", "compensate", "export", "solve", "compare", "verify", "study", "info", "apply"] {
         assert!(help.contains(&format!("\n  {command} ")), "{command} in:\n{help}");
         assert!(bench.ok(&format!("{command} --help")).contains("Usage:"), "{command} --help");
     }
@@ -443,4 +446,118 @@ fn solve_finds_the_flat_antennas_resonance_and_writes_s11() {
         assert!(bench.path("s").join(file).exists(), "{file}");
     }
     bench.fails("solve a.json --band 14 7", 1, "both must be positive");
+    bench.fails("solve a.json --shape flat --density coarse --band 7 14 --resume", 1, "no checkpoint of this run");
+    // The other stop rule agrees, and says by fit where the resonance is.
+    let settled = bench.json("solve a.json --shape flat --density coarse --band 7 14 --stop settled --json");
+    let differs = |key: &str| settled[key].as_f64().unwrap() / report[key].as_f64().unwrap() - 1.0;
+    assert!(differs("resonance_ghz").abs() < 5e-4, "{report} {settled}");
+    assert!(differs("bandwidth_10_db_mhz").abs() < 0.01, "{report} {settled}");
+    assert!(settled["steps"].as_u64() < report["steps"].as_u64(), "it stops earlier: {report} {settled}");
+    for report in [&report, &settled] {
+        assert_eq!(report["is_settled"], true, "{report}");
+        let within = report["fitted_resonance_error_ghz"].as_f64().unwrap();
+        assert!(within < 0.05 && (4.0..6.0).contains(&report["q"].as_f64().unwrap()), "{report}");
+    }
+    assert!(differs("q").abs() < 0.02, "{report} {settled}");
+    #[cfg(unix)]
+    interrupted_and_resumed_it_gives_the_same_bits(&bench);
+}
+
+#[cfg(unix)]
+fn interrupted_and_resumed_it_gives_the_same_bits(straight: &Bench) {
+    let bench = Bench::new();
+    bench.ok("new a.json");
+    let line = "solve a.json --shape flat --density coarse --band 7 14 --out s";
+    let mut child = bench
+        .command(&format!("{line} --checkpoint-every 0"))
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let kept = || {
+        let files = fs::read_dir(bench.path("a.results")).into_iter().flatten();
+        files.map(|f| f.unwrap().path()).find(|f| f.extension().is_some_and(|e| e == "checkpoint"))
+    };
+    let path = loop {
+        assert!(child.try_wait().unwrap().is_none(), "a checkpoint is left before the run ends");
+        match kept() {
+            Some(path) => break path,
+            None => std::thread::sleep(Duration::from_millis(5)),
+        }
+    };
+    Command::new("sh").args(["-c", "kill -INT $0", &child.id().to_string()]).status().unwrap();
+    let ended = child.wait_with_output().unwrap();
+    let said = String::from_utf8(ended.stderr).unwrap();
+    assert_eq!(ended.status.code(), Some(130), "cancelled: {said}");
+    assert!(said.contains("add --resume to go on"), "{said}");
+    let good = fs::read(&path).unwrap();
+    let mut bad = good.clone();
+    bad[1000] ^= 1;
+    fs::write(&path, bad).unwrap();
+    bench.fails(&format!("{line} --resume"), 1, "the checkpoint is damaged");
+    fs::write(&path, good).unwrap();
+    bench.ok(&format!("{line} --resume"));
+    assert!(!path.exists(), "done, it is gone");
+    let s11 = |bench: &Bench| fs::read(bench.path("s/s11.csv")).unwrap();
+    assert!(s11(&bench) == s11(straight), "the same S11, bit for bit");
+}
+
+/// A result of a resonance at a frequency, as it is kept.
+fn kept_result(job: &Job, resonance: f64) -> Value {
+    let freqs: Vec<f64> = (0..=140).map(|k| 7e9 + 5e7 * f64::from(k)).collect();
+    let s11 = freqs.iter().map(|f| {
+        let detuning = Complex::new(0.05, (f - resonance) / 0.6e9);
+        detuning / (Complex::from(1.0) + detuning)
+    });
+    let (re, im): (Vec<f64>, Vec<f64>) = s11.map(|s| (s.re, s.im)).unzip();
+    let figures = serde_json::json!({
+        "port_impedance_ohm": 49.5, "tets": 50_000, "clipped_cells": 0, "dt_s": 1.4e-13, "steps": 9000,
+        "residual_db": -40.0, "is_settled": true, "tet_steps_per_second": 5e7, "seconds": 9.0,
+    });
+    serde_json::json!({"format": "conformant-result", "version": 1, "content": {
+        "job": job, "freqs_hz": freqs, "s11_re": re, "s11_im": im, "reference_ohm": 50.0, "fitted": null,
+        "figures": figures,
+    }})
+}
+
+#[test]
+fn compare_solves_only_what_is_missing_and_tells_errors_against_the_cylinder() {
+    let bench = Bench::new();
+    bench.ok("new a.json --bend e --radius 10 --segments 10");
+    let project = file::read(&bench.path("a.json")).unwrap();
+    let mesh = MeshSettings { density: Density::Coarse, ..MeshSettings::default() };
+    let settings = SolveSettings::new(mesh, [7e9, 14e9]);
+    let dir = results_dir(&bench.path("a.json"));
+    fs::create_dir(&dir).unwrap();
+    let keep = |shape, compensation, resonance| {
+        let mut project = project.clone();
+        project.settings.compensation = compensation;
+        let job = Job::new(&project, shape, &settings);
+        fs::write(job.result_path(&dir), kept_result(&job, resonance).to_string()).unwrap();
+    };
+    keep(Shape::Cylinder, CompensationMode::None, 10.4e9);
+    keep(Shape::Deformed, CompensationMode::None, 11.0e9);
+    keep(Shape::Deformed, CompensationMode::Wl, 10.5e9);
+    keep(Shape::Deformed, CompensationMode::Isometric, 10.41e9);
+    let line = "compare a.json --density coarse --band 7 14 --out c --json";
+    let report = bench.json(line);
+    let rows = report["rows"].as_array().unwrap();
+    let names: Vec<&str> = rows.iter().map(|r| r["shape"].as_str().unwrap()).collect();
+    assert_eq!(names, ["flat", "cylinder", "raw", "wl", "isometric"], "{report}");
+    let error = |k: usize| rows[k]["resonance_error"].as_f64().unwrap();
+    for (k, expected) in [(1, 0.0), (2, 11.0 / 10.4 - 1.0), (3, 10.5 / 10.4 - 1.0), (4, 10.41 / 10.4 - 1.0)] {
+        assert!((error(k) - expected).abs() < 1e-4, "{}: {} {expected}", names[k], error(k));
+        assert!(rows[k]["bandwidth_error"].as_f64().unwrap().abs() < 0.01, "the same width: {report}");
+    }
+    // The one that was missing is the real antenna.
+    assert!((9.9..10.2).contains(&rows[0]["resonance_ghz"].as_f64().unwrap()), "{report}");
+    assert_eq!(bench.json(line)["rows"], report["rows"], "nothing is solved anew, not even the seconds differ");
+    for file in ["compare.csv", "s11.svg", "s11.png", "s11.csv", "s11_flat.s1p", "s11_isometric.s1p"] {
+        assert!(bench.path("c").join(file).exists(), "{file}");
+    }
+    assert_eq!(fs::read_to_string(bench.path("c/compare.csv")).unwrap().lines().count(), 6, "header and five rows");
+    let svg = fs::read_to_string(bench.path("c/s11.svg")).unwrap();
+    assert!(["exact cylinder", "uncompensated", "WL", "isometric"].iter().all(|name| svg.contains(name)), "legend");
+    bench.fails("compare --out d", 2, "required");
+    bench.fails("compare a.json --paper bends --out d", 2, "cannot be used with");
 }

@@ -9,15 +9,18 @@
 
 mod apply;
 mod args;
+mod compare;
 mod deform;
 mod example;
 mod export;
 mod info;
 mod mesh;
 mod new;
+mod pattern;
 mod plot;
 mod progress;
 mod report;
+mod runs;
 mod solve;
 mod study;
 
@@ -94,6 +97,7 @@ fn dispatch(command: Command, task: &Task) -> Result<ExitCode> {
         Command::Export(args) => export::export(&args, task)?,
         Command::Mesh(args) => mesh::run(&args, task)?,
         Command::Solve(args) => solve::run(&args, task)?,
+        Command::Compare(args) => compare::run(&args, task)?,
         Command::Verify(args) => return Ok(if export::verify(&args)? { ExitCode::SUCCESS } else { FAULTS.into() }),
         Command::Study(args) => study::run(&args, task)?,
         Command::Info(args) => info::run(&args)?,

@@ -10,22 +10,27 @@
 //! it. A [`MeshJob`](mesh_job::MeshJob) fills antenna and air with tetrahedra beside all that.
 
 mod error;
+mod estimate;
 mod fields;
 pub mod live;
+mod looks;
 mod mesh;
 pub mod mesh_job;
 mod retreat;
 mod scene;
 mod solve;
 mod stages;
+mod stored;
 mod summary;
 pub mod worker;
 
 pub use error::PipelineError;
+pub use estimate::{Estimate, estimate};
 pub use fields::Fields;
 pub use mesh::{Density, MeshSettings, Meshed, Shape, mesh};
 pub use retreat::retreat;
 pub use scene::Scene;
-pub use solve::{SolveSettings, Solved, solve};
+pub use solve::{Running, SolveSettings, Solved, StopRule, solve};
 pub use stages::{Deformed, Stages, apply_cage, deform, exact_cylinder, flat, run};
+pub use stored::{Job, RunFigures, Stored, results_dir};
 pub use summary::{FiguresReport, summary};

@@ -212,6 +212,25 @@ impl<'a> Assembly<'a> {
         (conductance, source, observation)
     }
 
+    /// Conductances of lossy material and sheets in a cell; `None` where nothing is lost. The absorber stands for the
+    /// outside and does not count.
+    pub(super) fn dissipation(&self, k: usize) -> Option<Matrix6<f64>> {
+        let (corners, tet) = self.cells[k];
+        let conductivity = TAU * self.loss_freq / C0 * self.mesh.regions[self.region(tet)].tan_delta;
+        let sheets: Vec<_> = faces_of(corners).into_iter().filter(|(_, f)| self.faces.sheets.contains_key(f)).collect();
+        if conductivity <= 0.0 && sheets.is_empty() {
+            return None;
+        }
+        let mut loss = self.cell(k).capacitance * conductivity;
+        for (places, face) in sheets {
+            let mass = face_mass(face.map(|v| self.mesh.vertices[v.index()])).0 * (self.faces.sheets[&face] / 2.0);
+            for (a, b) in (0..3).flat_map(|a| (0..3).map(move |b| (a, b))) {
+                loss[(places[a], places[b])] += mass[(a, b)];
+            }
+        }
+        Some(loss)
+    }
+
     /// * `x`: half a time step, m.
     pub(super) fn terms(&self, k: usize, x: f64, at_boundary: bool) -> LaneTerms {
         let (corners, tet) = self.cells[k];
@@ -253,7 +272,7 @@ fn center(mesh: &TetMesh, tet: usize) -> DVec3 {
     mesh.corners(tet).iter().sum::<DVec3>() / 4.0
 }
 
-fn ascending(mut corners: [VertexId; 4]) -> [VertexId; 4] {
+pub(super) fn ascending(mut corners: [VertexId; 4]) -> [VertexId; 4] {
     corners.sort_unstable();
     corners
 }

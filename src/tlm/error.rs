@@ -28,6 +28,12 @@ pub enum TlmError {
         /// Its value.
         value: f64,
     },
+    /// No closed surface fits between the antenna and the outer boundary.
+    #[error("no closed surface fits into the {room_mm:.3} mm of air between the antenna and the outer boundary: leave more room, or mesh the air finer", room_mm = room * 1e3)]
+    NoRoom {
+        /// Distance of the two, m.
+        room: f64,
+    },
     /// The frequencies make no sense.
     #[error("the band from {lo_ghz} to {hi_ghz} GHz is none: both must be positive, the first one smaller", lo_ghz = lo / 1e9, hi_ghz = hi / 1e9)]
     Band {
@@ -36,6 +42,11 @@ pub enum TlmError {
         /// Upper end, Hz.
         hi: f64,
     },
+    /// The checkpoint was taken of another run.
+    #[error(
+        "the checkpoint belongs to another run: antenna, mesh density, band and version of the program must be the same; solve without it"
+    )]
+    ForeignCheckpoint,
     /// The work was called off.
     #[error(transparent)]
     Cancelled(#[from] crate::task::Cancelled),

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! TetMesh --Network::new--> Network (coefficients, fixed) --Run (state, steps)--> port series
+//!                                                          '--> Checkpoint, from which it goes on with the same bits
 //! ```
 //!
 //! Each cell is a node with a port per edge; a port's voltage is the line integral of the electric field along the
@@ -16,20 +17,29 @@
 mod assembly;
 mod blocks;
 mod cell;
+mod checkpoint;
 mod error;
+mod huygens;
 mod loads;
 mod network;
 mod port;
 mod real;
+mod recorder;
 mod run;
 mod sheet_edge;
 mod source;
 #[cfg(test)]
 mod tests;
 
+pub use checkpoint::Checkpoint;
 pub use error::TlmError;
+pub use huygens::{ClosedSurface, Huygens};
 pub use loads::{Loads, Resistor};
 pub use network::{Network, NetworkSettings, StepLimit};
 pub use real::Real;
+pub use recorder::{FieldRecorder, SurfaceField};
 pub use run::{Record, Run};
 pub use source::Pulse;
+
+/// Goes up when the same mesh and settings give another result, so that results kept from before are known as such.
+pub const SOLVER_VERSION: u32 = 1;

@@ -1,7 +1,7 @@
 //! From a mesh to the coefficients of all cells: fixed once built.
 
 use super::TlmError;
-use super::assembly::Assembly;
+use super::assembly::{Assembly, ascending};
 use super::blocks::{ADMITTANCE, Block, Boundary, LANES};
 use super::cell::{EDGES, MARGIN};
 use super::loads::Loads;
@@ -59,6 +59,12 @@ pub struct Network<T> {
     pub(super) places: Vec<u32>,
     /// `2 / (sum Y + conductance of resistors)` of each edge.
     pub(super) weights: Vec<T>,
+    /// By lane over all blocks: number of the cell in the mesh, `u32::MAX` for filling.
+    tets: Vec<u32>,
+    /// Cells of lossy material or at lossy sheets.
+    pub(super) lossy: Vec<Lossy>,
+    /// Edges with resistors, and their conductance in units of the free-space admittance.
+    pub(super) resistors: Vec<(u32, f64)>,
     /// Number of cells.
     pub n_tets: usize,
     /// Time step, s.
@@ -67,6 +73,14 @@ pub struct Network<T> {
     pub port_impedance: Option<f64>,
     /// Cells whose stubs were clipped to allow the step.
     pub n_clipped: usize,
+}
+
+/// What a cell loses: `V^T G V`, without what stands for the outside (absorber, outer boundary, port).
+#[derive(Clone, Debug)]
+pub(super) struct Lossy {
+    pub(super) lane: usize,
+    /// G by rows of the lower triangle, in units of the free-space admittance.
+    pub(super) conductance: [f64; 21],
 }
 
 impl<T: Real> Network<T> {
@@ -96,11 +110,42 @@ impl<T: Real> Network<T> {
             starts,
             places,
             weights,
+            tets: slots.tets(&assembly),
+            lossy: slots.lossy(&assembly),
+            resistors: slots.resistors(&assembly),
             n_tets: mesh.tets.len(),
             dt: 2.0 * x / C0,
             port_impedance: assembly.port().map(|mode| ETA0 / mode.admittance),
             n_clipped,
         })
+    }
+
+    /// Number of the edge between two vertices of the mesh that the network was made from; `None` where there is none, or
+    /// it lies on a conductor.
+    #[must_use]
+    pub fn edge(&self, mesh: &TetMesh, ends: [VertexId; 2]) -> Option<u32> {
+        let at_edge: Vec<bool> = mesh.tets.iter().map(|t| ends.iter().all(|v| t.vertices.contains(v))).collect();
+        let (lane, tet) = self.lanes_of(&at_edge).next()?;
+        let corners = ascending(mesh.tets[tet].vertices);
+        let is_it = |&(i, j): &(usize, usize)| ends.contains(&corners[i]) && ends.contains(&corners[j]);
+        self.live_edges(lane)[EDGES.iter().position(is_it)?]
+    }
+
+    /// Lanes of some of the mesh's cells, with the cell.
+    pub(super) fn lanes_of<'a>(&'a self, is_chosen: &'a [bool]) -> impl Iterator<Item = (usize, usize)> + 'a {
+        let lanes = self.tets.iter().enumerate().filter(|(_, t)| **t != u32::MAX);
+        lanes.map(|(lane, t)| (lane, *t as usize)).filter(|(_, t)| is_chosen[*t])
+    }
+
+    /// Number of a lane's cell in the mesh.
+    pub(super) fn tet(&self, lane: usize) -> usize {
+        self.tets[lane] as usize
+    }
+
+    /// Edges of a lane's ports; none where they are dropped.
+    pub(super) fn live_edges(&self, lane: usize) -> [Option<u32>; 6] {
+        let block = &self.blocks[lane / LANES];
+        std::array::from_fn(|e| Some(block.edges[e][lane % LANES]).filter(|&edge| (edge as usize) < self.n_edges))
     }
 }
 
@@ -163,6 +208,27 @@ impl Slots {
         let none = VertexId::new(n_edges).raw();
         edges.iter_mut().flatten().filter(|e| **e == u32::MAX).for_each(|e| *e = none);
         Self { cells, edges, n_edges, ends, n_inner_blocks: n_inner_lanes / LANES }
+    }
+
+    fn tets(&self, assembly: &Assembly<'_>) -> Vec<u32> {
+        self.cells.iter().map(|k| k.map_or(u32::MAX, |k| VertexId::new(assembly.cells[k].1).raw())).collect()
+    }
+
+    fn lossy(&self, assembly: &Assembly<'_>) -> Vec<Lossy> {
+        let lanes = self.cells.par_iter().enumerate();
+        let lossy = lanes.filter_map(|(lane, k)| {
+            let matrix = assembly.dissipation((*k)?)?;
+            let mut conductance = [0.0; 21];
+            let places = (0..6).flat_map(|a| (0..=a).map(move |b| (a, b)));
+            conductance.iter_mut().zip(places).for_each(|(g, place)| *g = matrix[place]);
+            Some(Lossy { lane, conductance })
+        });
+        lossy.collect()
+    }
+
+    fn resistors(&self, assembly: &Assembly<'_>) -> Vec<(u32, f64)> {
+        let edges = (0..).zip(&self.ends).map(|(k, &edge)| (k, assembly.conductance(edge)));
+        edges.filter(|(_, conductance)| *conductance > 0.0).collect()
     }
 
     fn fill<T: Real>(&self, assembly: &Assembly<'_>, x: f64) -> (Vec<Block<T>>, Vec<Boundary<T>>) {

@@ -1,8 +1,9 @@
 //! The field in time: scatter, connect, drive and read the port.
 
 use super::blocks::{LANES, Reflected, Scatter, State};
-use super::{Network, Pulse, Real, TlmError};
+use super::{FieldRecorder, Network, Pulse, Real, TlmError};
 use crate::task::Task;
+use crate::units::ETA0;
 use rayon::prelude::*;
 use std::time::Instant;
 
@@ -30,6 +31,12 @@ impl Record {
         self.total.iter().zip(&self.incident).map(|(total, incident)| total - incident)
     }
 
+    /// Its first steps.
+    #[must_use]
+    pub fn until(&self, n_steps: usize) -> Self {
+        Self { dt: self.dt, incident: self.incident[..n_steps].to_vec(), total: self.total[..n_steps].to_vec() }
+    }
+
     /// How far the reflected voltage has fallen: greatest magnitude over the last `window` seconds relative to the
     /// greatest of all.
     #[must_use]
@@ -46,14 +53,17 @@ impl Record {
 /// A run of the field in a network.
 #[derive(Clone, Debug)]
 pub struct Run<'a, T> {
-    network: &'a Network<T>,
-    pulse: Pulse,
-    states: Vec<State<T>>,
-    reflected: Vec<Reflected<T>>,
+    pub(super) network: &'a Network<T>,
+    pub(super) pulse: Pulse,
+    pub(super) states: Vec<State<T>>,
+    pub(super) reflected: Vec<Reflected<T>>,
     /// Edge voltages; one more than there are edges, always zero.
-    voltages: Vec<T>,
-    record: Record,
-    seconds: f64,
+    pub(super) voltages: Vec<T>,
+    pub(super) record: Record,
+    pub(super) fields: Option<FieldRecorder>,
+    /// Edge along which a current is impressed, instead of a wave at the port.
+    impressed: Option<u32>,
+    pub(super) seconds: f64,
 }
 
 impl<'a, T: Real> Run<'a, T> {
@@ -67,14 +77,44 @@ impl<'a, T: Real> Run<'a, T> {
             reflected: vec![[[T::default(); LANES]; 6]; network.blocks.len()],
             voltages: vec![T::default(); network.n_edges + 1],
             record: Record { dt: network.dt, ..Record::default() },
+            fields: None,
+            impressed: None,
             seconds: 0.0,
         }
+    }
+
+    /// The same run driven by a current along an edge of the mesh instead of a wave at the port.
+    ///
+    /// The current is the pulse in amperes, towards the vertex with the higher number, at `(n + 1/2) dt`.
+    ///
+    /// * `edge`: of [`Network::edge`].
+    #[must_use]
+    pub fn with_current(self, edge: u32) -> Self {
+        Self { impressed: Some(edge), ..self }
+    }
+
+    /// The same run with the field gathered at some frequencies.
+    #[must_use]
+    pub fn with_fields(self, fields: FieldRecorder) -> Self {
+        Self { fields: Some(fields), ..self }
+    }
+
+    /// The field gathered so far.
+    #[must_use]
+    pub fn fields(&self) -> Option<&FieldRecorder> {
+        self.fields.as_ref()
     }
 
     /// What the port saw so far.
     #[must_use]
     pub fn record(&self) -> &Record {
         &self.record
+    }
+
+    /// Number of cells.
+    #[must_use]
+    pub fn n_tets(&self) -> usize {
+        self.network.n_tets
     }
 
     /// Cells times steps per second so far.
@@ -119,9 +159,18 @@ impl<'a, T: Real> Run<'a, T> {
     }
 
     fn step(&mut self) {
-        let incident = self.pulse.at(self.record.total.len() as f64 * self.network.dt);
+        let step = self.record.total.len();
+        let at = |step: f64| self.pulse.at(step * self.network.dt);
+        let incident = if self.impressed.is_none() { at(step as f64) } else { 0.0 };
+        let current = if self.impressed.is_some() { at(step as f64 + 0.5) } else { 0.0 };
         let observed = self.scatter(T::new(incident));
         self.connect();
+        if let Some(edge) = self.impressed {
+            self.voltages[edge as usize] -= T::new(0.5 * ETA0 * current) * self.network.weights[edge as usize];
+        }
+        if let Some(fields) = &mut self.fields {
+            fields.sample(step, &self.voltages, self.reflected.as_flattened().as_flattened());
+        }
         self.record.incident.push(incident);
         self.record.total.push(observed);
     }

@@ -16,16 +16,16 @@ const BOTTOM: f64 = 54.0;
 const LEGEND: f64 = 172.0;
 const LEGEND_ROW: f64 = 20.0;
 
-const INK: [u8; 3] = [33, 37, 41];
-const SOFT: [u8; 3] = [90, 96, 102];
-const GRID_LINE: [u8; 3] = [228, 231, 234];
+pub(super) const INK: [u8; 3] = [33, 37, 41];
+pub(super) const SOFT: [u8; 3] = [90, 96, 102];
+pub(super) const GRID_LINE: [u8; 3] = [228, 231, 234];
 const ZERO_LINE: [u8; 3] = [150, 155, 160];
-const PAPER: [u8; 3] = [255, 255, 255];
+pub(super) const PAPER: [u8; 3] = [255, 255, 255];
 
-const TITLE: Font = Font { size: 16.0, bold: true };
-const HEADING: Font = Font { size: 13.0, bold: true };
+pub(super) const TITLE: Font = Font { size: 16.0, bold: true };
+pub(super) const HEADING: Font = Font { size: 13.0, bold: true };
 const LABEL: Font = Font { size: 13.0, bold: false };
-const TICK: Font = Font { size: 12.0, bold: false };
+pub(super) const TICK: Font = Font { size: 12.0, bold: false };
 
 /// Width and height of the figure.
 pub(super) fn size(figure: &Figure) -> (u32, u32) {

@@ -4,7 +4,9 @@
 //! on a fine pixel grid, so they look alike; the CSV has one row per point, with the reason where there is none. Text
 //! is set in the font in assets/fonts, so that no font of the system is needed.
 //!
-//! Not handled: anything but lines over one abscissa.
+//! Patterns over an angle are drawn as [`Polar`] figures by the same means.
+//!
+//! Not handled: anything but lines over one abscissa or angle.
 
 #![allow(
     clippy::cast_possible_truncation,
@@ -16,13 +18,15 @@
 mod axes;
 mod canvas;
 mod layout;
+mod polar;
 
 use anyhow::{Context, Result, anyhow};
 use canvas::Canvas;
-use plotters::prelude::{BitMapBackend, IntoDrawingArea, SVGBackend};
+use plotters::prelude::{BitMapBackend, DrawingBackend, IntoDrawingArea, SVGBackend};
 use std::path::Path;
 
 pub(super) use axes::Axis;
+pub(super) use polar::{Curve, Dial, Polar};
 
 /// Drawing grid points per unit of the figure's size: SVG coordinates are whole grid points.
 const GRID: u32 = 4;
@@ -106,16 +110,40 @@ impl Figure {
         }
         text
     }
+}
+
+impl Drawing for Figure {
+    fn name(&self) -> &str {
+        self.name
+    }
+
+    fn size(&self) -> (u32, u32) {
+        layout::size(self)
+    }
+
+    fn draw<B: DrawingBackend>(&self, canvas: &Canvas<'_, B>) -> Result<()> {
+        layout::draw(self, canvas)
+    }
+}
+
+/// What can be drawn on any backend, and so written as SVG and PNG.
+trait Drawing {
+    fn name(&self) -> &str;
+
+    /// Width and height in units of the figure.
+    fn size(&self) -> (u32, u32);
+
+    fn draw<B: DrawingBackend>(&self, canvas: &Canvas<'_, B>) -> Result<()>;
 
     /// The drawing on the fine grid, to be shown at the figure's own size.
     fn svg(&self) -> Result<String> {
         canvas::register_fonts();
-        let (width, height) = layout::size(self);
+        let (width, height) = self.size();
         let mut svg = String::new();
         {
             let area = SVGBackend::with_string(&mut svg, (width * GRID, height * GRID)).into_drawing_area();
-            layout::draw(self, &Canvas::new(&area, canvas::SVG_DROP))?;
-            area.present().map_err(|e| anyhow!("drawing {}: {e}", self.name))?;
+            self.draw(&Canvas::new(&area, canvas::SVG_DROP))?;
+            area.present().map_err(|e| anyhow!("drawing {}: {e}", self.name()))?;
         }
         let grid = format!("width=\"{}\" height=\"{}\"", width * GRID, height * GRID);
         Ok(svg.replacen(&grid, &format!("width=\"{width}\" height=\"{height}\""), 1))
@@ -123,16 +151,16 @@ impl Figure {
 
     fn png(&self) -> Result<Vec<u8>> {
         canvas::register_fonts();
-        let (width, height) = layout::size(self);
+        let (width, height) = self.size();
         let (wide, high) = (width * GRID, height * GRID);
         let mut pixels = vec![255; (wide * high * 3) as usize];
         {
             let area = BitMapBackend::with_buffer(&mut pixels, (wide, high)).into_drawing_area();
-            layout::draw(self, &Canvas::new(&area, canvas::PICTURE_DROP))?;
-            area.present().map_err(|e| anyhow!("drawing {}: {e}", self.name))?;
+            self.draw(&Canvas::new(&area, canvas::PICTURE_DROP))?;
+            area.present().map_err(|e| anyhow!("drawing {}: {e}", self.name()))?;
         }
         let (small, width, height) = averaged(&pixels, wide, high);
-        encode(&small, width, height).with_context(|| format!("encoding {}.png", self.name))
+        encode(&small, width, height).with_context(|| format!("encoding {}.png", self.name()))
     }
 }
 
