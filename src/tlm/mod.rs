@@ -27,6 +27,7 @@ mod real;
 mod recorder;
 mod run;
 mod sheet_edge;
+mod slots;
 mod source;
 #[cfg(test)]
 mod tests;

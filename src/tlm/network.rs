@@ -2,16 +2,16 @@
 
 use super::TlmError;
 use super::assembly::{Assembly, ascending};
-use super::blocks::{ADMITTANCE, Block, Boundary, LANES};
+use super::blocks::{Block, Boundary, LANES};
 use super::cell::{EDGES, MARGIN};
 use super::loads::Loads;
 use super::real::Real;
+use super::slots::{Chunk, Slots};
 use crate::geometry::VertexId;
 use crate::task::Task;
 use crate::tet::TetMesh;
 use crate::units::{C0, ETA0};
 use rayon::prelude::*;
-use std::collections::HashMap;
 
 /// How the time step is chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,6 +53,7 @@ pub struct Network<T> {
     pub(super) blocks: Vec<Block<T>>,
     /// Terms of the last blocks, which hold all cells with boundary faces.
     pub(super) boundary: Vec<Boundary<T>>,
+    pub(super) chunks: Vec<Chunk>,
     pub(super) n_edges: usize,
     /// For each edge where its ports' reflected currents are among those of all blocks, from `starts[e]` to `starts[e + 1]`.
     pub(super) starts: Vec<u32>,
@@ -106,6 +107,7 @@ impl<T: Real> Network<T> {
         Ok(Self {
             blocks: filled.0,
             boundary: filled.1,
+            chunks: slots.chunks.clone(),
             n_edges: slots.n_edges,
             starts,
             places,
@@ -160,116 +162,4 @@ fn limit(limits: &[f64], step: StepLimit) -> f64 {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a part of the length")]
     let place = (share * sorted.len() as f64) as usize;
     sorted[place.min(sorted.len() - 1)]
-}
-
-/// Which cell is in which lane of which block, and which edges its ports have.
-pub(super) struct Slots {
-    /// By lane over all blocks: number of the cell, `None` for filling.
-    pub(super) cells: Vec<Option<usize>>,
-    /// By lane: edges of the ports, `n_edges` for dropped ones.
-    pub(super) edges: Vec<[u32; 6]>,
-    n_edges: usize,
-    /// Ends of each edge, ascending.
-    pub(super) ends: Vec<[VertexId; 2]>,
-    /// Blocks before this one have no boundary faces.
-    n_inner_blocks: usize,
-}
-
-impl Slots {
-    pub(super) fn new(assembly: &Assembly<'_>) -> Self {
-        let n = assembly.cells.len();
-        let pad = |count: usize| count.div_ceil(LANES) * LANES;
-        let n_inner_lanes = pad(assembly.n_inner);
-        let inner = (0..n_inner_lanes).map(|k| (k < assembly.n_inner).then_some(k));
-        let rest = (0..pad(n - assembly.n_inner)).map(|k| Some(assembly.n_inner + k).filter(|&k| k < n));
-        let cells: Vec<Option<usize>> = inner.chain(rest).collect();
-        // Edges by first touch: what a block needs lies close together.
-        let mut number: HashMap<[VertexId; 2], u32> = HashMap::with_capacity(2 * n);
-        let mut edges = Vec::with_capacity(cells.len());
-        for cell in &cells {
-            let Some(k) = *cell else {
-                edges.push([u32::MAX; 6]);
-                continue;
-            };
-            let (corners, tet) = assembly.cells[k];
-            let free = assembly.free(corners, tet);
-            edges.push(std::array::from_fn(|e| {
-                if !free[e] {
-                    return u32::MAX;
-                }
-                let (i, j) = EDGES[e];
-                let next = VertexId::new(number.len()).raw();
-                *number.entry([corners[i], corners[j]]).or_insert(next)
-            }));
-        }
-        let n_edges = number.len();
-        let mut ends: Vec<[VertexId; 2]> = vec![[VertexId::new(0); 2]; n_edges];
-        number.into_iter().for_each(|(edge, k)| ends[k as usize] = edge);
-        let none = VertexId::new(n_edges).raw();
-        edges.iter_mut().flatten().filter(|e| **e == u32::MAX).for_each(|e| *e = none);
-        Self { cells, edges, n_edges, ends, n_inner_blocks: n_inner_lanes / LANES }
-    }
-
-    fn tets(&self, assembly: &Assembly<'_>) -> Vec<u32> {
-        self.cells.iter().map(|k| k.map_or(u32::MAX, |k| VertexId::new(assembly.cells[k].1).raw())).collect()
-    }
-
-    fn lossy(&self, assembly: &Assembly<'_>) -> Vec<Lossy> {
-        let lanes = self.cells.par_iter().enumerate();
-        let lossy = lanes.filter_map(|(lane, k)| {
-            let matrix = assembly.dissipation((*k)?)?;
-            let mut conductance = [0.0; 21];
-            let places = (0..6).flat_map(|a| (0..=a).map(move |b| (a, b)));
-            conductance.iter_mut().zip(places).for_each(|(g, place)| *g = matrix[place]);
-            Some(Lossy { lane, conductance })
-        });
-        lossy.collect()
-    }
-
-    fn resistors(&self, assembly: &Assembly<'_>) -> Vec<(u32, f64)> {
-        let edges = (0..).zip(&self.ends).map(|(k, &edge)| (k, assembly.conductance(edge)));
-        edges.filter(|(_, conductance)| *conductance > 0.0).collect()
-    }
-
-    fn fill<T: Real>(&self, assembly: &Assembly<'_>, x: f64) -> (Vec<Block<T>>, Vec<Boundary<T>>) {
-        let lanes = self.cells.par_chunks(LANES).zip(self.edges.par_chunks(LANES)).enumerate();
-        let blocks = lanes.map(|(b, (cells, edges))| {
-            let mut block = Block { coefficients: [[T::default(); LANES]; 35], edges: [[0; LANES]; 6] };
-            let mut boundary = Boundary { terms: [[T::default(); LANES]; 33] };
-            for (w, (cell, ports)) in cells.iter().zip(edges).enumerate() {
-                (0..6).for_each(|e| block.edges[e][w] = ports[e]);
-                if let Some(k) = *cell {
-                    let terms = assembly.terms(k, x, b >= self.n_inner_blocks);
-                    block.coefficients.iter_mut().zip(terms.coefficients).for_each(|(lane, c)| lane[w] = T::new(c));
-                    boundary.terms.iter_mut().zip(terms.boundary).for_each(|(lane, c)| lane[w] = T::new(c));
-                }
-            }
-            (block, boundary)
-        });
-        let all: Vec<(Block<T>, Boundary<T>)> = blocks.collect();
-        let boundary = all[self.n_inner_blocks..].iter().map(|(_, boundary)| boundary.clone()).collect();
-        (all.into_iter().map(|(block, _)| block).collect(), boundary)
-    }
-
-    /// For each edge its ports' places in the state, and `2 / (sum Y + conductance of resistors)`.
-    fn connect<T: Real>(&self, blocks: &[Block<T>], assembly: &Assembly<'_>) -> (Vec<u32>, Vec<u32>, Vec<T>) {
-        let mut starts = vec![0_u32; self.n_edges + 1];
-        let live = |edge: u32| (edge as usize) < self.n_edges;
-        self.edges.iter().flatten().filter(|e| live(**e)).for_each(|&e| starts[e as usize + 1] += 1);
-        (0..self.n_edges).for_each(|e| starts[e + 1] += starts[e]);
-        let mut next = starts.clone();
-        let mut places = vec![0_u32; starts[self.n_edges] as usize];
-        let mut sums: Vec<f64> = self.ends.iter().map(|&edge| assembly.conductance(edge)).collect();
-        for (lane, ports) in self.edges.iter().enumerate() {
-            let (b, w) = (lane / LANES, lane % LANES);
-            for (e, &edge) in ports.iter().enumerate().filter(|(_, edge)| live(**edge)) {
-                let place = (b * 6 + e) * LANES + w;
-                places[next[edge as usize] as usize] = VertexId::new(place).raw();
-                next[edge as usize] += 1;
-                sums[edge as usize] += blocks[b].coefficients[ADMITTANCE + e][w].to_f64();
-            }
-        }
-        let weights = sums.iter().map(|s| T::new(2.0 / s)).collect();
-        (starts, places, weights)
-    }
 }

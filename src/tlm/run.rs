@@ -7,9 +7,7 @@ use crate::units::ETA0;
 use rayon::prelude::*;
 use std::time::Instant;
 
-/// Blocks that one thread takes at a time.
-const CHUNK: usize = 128;
-/// Edges that one thread takes at a time.
+/// Edges of several chunks that one thread takes at a time.
 const EDGE_CHUNK: usize = 8192;
 /// Steps between two looks at the task.
 const STRIDE: usize = 64;
@@ -59,6 +57,8 @@ pub struct Run<'a, T> {
     pub(super) reflected: Vec<Reflected<T>>,
     /// Edge voltages; one more than there are edges, always zero.
     pub(super) voltages: Vec<T>,
+    /// Those of the next connection, while cells still read the last ones.
+    next: Vec<T>,
     pub(super) record: Record,
     pub(super) fields: Option<FieldRecorder>,
     /// Edge along which a current is impressed, instead of a wave at the port.
@@ -76,6 +76,7 @@ impl<'a, T: Real> Run<'a, T> {
             states: vec![[[T::default(); LANES]; 9]; network.blocks.len()],
             reflected: vec![[[T::default(); LANES]; 6]; network.blocks.len()],
             voltages: vec![T::default(); network.n_edges + 1],
+            next: vec![T::default(); network.n_edges + 1],
             record: Record { dt: network.dt, ..Record::default() },
             fields: None,
             impressed: None,
@@ -164,7 +165,8 @@ impl<'a, T: Real> Run<'a, T> {
         let incident = if self.impressed.is_none() { at(step as f64) } else { 0.0 };
         let current = if self.impressed.is_some() { at(step as f64 + 0.5) } else { 0.0 };
         let observed = self.scatter(T::new(incident));
-        self.connect();
+        self.connect_shared();
+        std::mem::swap(&mut self.voltages, &mut self.next);
         if let Some(edge) = self.impressed {
             self.voltages[edge as usize] -= T::new(0.5 * ETA0 * current) * self.network.weights[edge as usize];
         }
@@ -175,45 +177,54 @@ impl<'a, T: Real> Run<'a, T> {
         self.record.total.push(observed);
     }
 
-    /// All cells; returns the total voltage at the port.
+    /// All cells, and the edges that only one chunk has; returns the total voltage at the port.
     fn scatter(&mut self, signal: T) -> f64 {
         let arch = pulp::Arch::new();
+        let network = self.network;
+        let n_inner = network.blocks.len() - network.boundary.len();
         let voltages = &self.voltages[..];
-        let n_inner = self.network.blocks.len() - self.network.boundary.len();
-        let (inner_blocks, outer_blocks) = self.network.blocks.split_at(n_inner);
-        let (inner_states, outer_states) = self.states.split_at_mut(n_inner);
-        let (inner_reflected, outer_reflected) = self.reflected.split_at_mut(n_inner);
-        let inner = || {
-            let fields = inner_states.par_chunks_mut(CHUNK).zip(inner_reflected.par_chunks_mut(CHUNK));
-            inner_blocks.par_chunks(CHUNK).zip(fields).for_each(|(blocks, (states, reflected))| {
-                arch.dispatch(Scatter { blocks, states, reflected, voltages, boundary: None });
-            });
-        };
-        let outer = || -> Vec<f64> {
-            let fields = outer_states.par_chunks_mut(CHUNK).zip(outer_reflected.par_chunks_mut(CHUNK));
-            let fixed = outer_blocks.par_chunks(CHUNK).zip(self.network.boundary.par_chunks(CHUNK));
-            let seen = fixed.zip(fields).map(|((blocks, terms), (states, reflected))| {
-                arch.dispatch(Scatter { blocks, states, reflected, voltages, boundary: Some((terms, signal)) })
-            });
-            seen.collect()
-        };
-        // Summed in the order of the blocks, whichever thread was first.
-        rayon::join(inner, outer).1.iter().sum()
+        let (mut states, mut reflected, mut next) = (&mut self.states[..], &mut self.reflected[..], &mut self.next[..]);
+        let mut parts = Vec::with_capacity(network.chunks.len());
+        for chunk in &network.chunks {
+            parts.push((
+                chunk,
+                states.split_off_mut(..chunk.blocks.len()).expect("chunks are all blocks"),
+                reflected.split_off_mut(..chunk.blocks.len()).expect("chunks are all blocks"),
+                next.split_off_mut(..chunk.edges.len()).expect("edges of chunks come first"),
+            ));
+        }
+        let seen = parts.into_par_iter().map(|(chunk, states, reflected, next)| {
+            let blocks = &network.blocks[chunk.blocks.clone()];
+            let terms = || &network.boundary[chunk.blocks.start - n_inner..chunk.blocks.end - n_inner];
+            let boundary = (chunk.blocks.start >= n_inner).then(|| (terms(), signal));
+            let seen = arch.dispatch(Scatter { blocks, states, reflected, voltages, boundary });
+            let reflected = reflected.as_flattened().as_flattened();
+            network.connect(chunk.edges.start, next, reflected, chunk.blocks.start * 6 * LANES);
+            seen
+        });
+        // Summed in the order of the chunks, whichever thread was first.
+        seen.collect::<Vec<f64>>().iter().sum()
     }
 
-    /// The voltage of every edge, from what its cells reflect.
-    fn connect(&mut self) {
+    /// The edges of several chunks.
+    fn connect_shared(&mut self) {
         let network = self.network;
         let reflected = self.reflected.as_flattened().as_flattened();
-        let edges = &mut self.voltages[..network.n_edges];
-        edges.par_chunks_mut(EDGE_CHUNK).enumerate().for_each(|(chunk, voltages)| {
-            let first = chunk * EDGE_CHUNK;
-            let starts = &network.starts[first..=first + voltages.len()];
-            for ((voltage, bounds), weight) in voltages.iter_mut().zip(starts.windows(2)).zip(&network.weights[first..])
-            {
-                let ports = &network.places[bounds[0] as usize..bounds[1] as usize];
-                *voltage = *weight * ports.iter().map(|&p| reflected[p as usize]).sum::<T>();
-            }
-        });
+        let first = network.chunks.last().map_or(0, |chunk| chunk.edges.end);
+        let shared = self.next[first..network.n_edges].par_chunks_mut(EDGE_CHUNK).enumerate();
+        shared.for_each(|(k, next)| network.connect(first + k * EDGE_CHUNK, next, reflected, 0));
+    }
+}
+
+impl<T: Real> Network<T> {
+    /// Voltages of some edges, from what their cells reflect.
+    ///
+    /// * `first`: number of the first edge; `offset`: place of the first of the reflected currents among all.
+    fn connect(&self, first: usize, voltages: &mut [T], reflected: &[T], offset: usize) {
+        let starts = &self.starts[first..=first + voltages.len()];
+        for ((voltage, bounds), weight) in voltages.iter_mut().zip(starts.windows(2)).zip(&self.weights[first..]) {
+            let ports = &self.places[bounds[0] as usize..bounds[1] as usize];
+            *voltage = *weight * ports.iter().map(|&p| reflected[p as usize - offset]).sum::<T>();
+        }
     }
 }

@@ -4,7 +4,7 @@ use super::assembly::Assembly;
 use super::blocks::{FLUX, LANES};
 use super::cell::EDGES;
 use super::loads::Loads;
-use super::network::Slots;
+use super::slots::Slots;
 use super::{Network, NetworkSettings, Pulse, Real, Run};
 use crate::geometry::{DVec3, Region, RegionId, RegionRole, VertexId};
 use crate::task::Task;
@@ -243,7 +243,7 @@ fn resonances_of_a_cavity_are_of_second_order() {
         let h = mean_edge(&mesh);
         let closed = Closed::new(&mesh, true);
         let errors = [0, 1, 2, 3].map(|m| closed.wave_number(|p| cavity_mode(m, p), exact[m]) / exact[m] - 1.0);
-        println!("h {h:.4}: {} cells: {errors:+.2e?}", mesh.tets.len());
+        println!("h {h:.4}: {} cells: {errors:?}", mesh.tets.len());
         for (error, k) in errors.iter().zip(exact) {
             assert!(error.abs() < SECOND_ORDER * (k * h).powi(2), "h {h}: {error:e} at {k}");
         }
