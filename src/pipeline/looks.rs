@@ -128,3 +128,52 @@ impl<'a> Looks<'a> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pipeline::MeshSettings;
+    use std::f64::consts::{PI, TAU};
+
+    const DT: f64 = 2e-13;
+    const BAND: [f64; 2] = [8e9, 16e9];
+
+    /// A matched resonance of 11 GHz with loaded Q 20, driven by the pulse: the reflection is `s / (s + half width)`.
+    fn record(pulse: Pulse, n: usize) -> Record {
+        let rate = nalgebra::Complex::new(-PI * 11e9 / 20.0, TAU * 11e9);
+        let mut stored = nalgebra::Complex::from(0.0);
+        let (mut incident, mut total) = (Vec::with_capacity(n), Vec::with_capacity(n));
+        for step in 0..n {
+            let wave = pulse.at(step as f64 * DT);
+            stored = stored * (rate * DT).exp() + wave * DT;
+            incident.push(wave);
+            // The incident wave, and the wave reflected at once less what the resonance radiates back.
+            total.push(2.0 * wave + (stored * 2.0 * rate.re).re);
+        }
+        Record { dt: DT, incident, total }
+    }
+
+    /// Steps at which a rule is met, and the frequency of the smallest |S11| by then.
+    fn stopped(stop: StopRule) -> (usize, f64) {
+        let settings = SolveSettings { stop, ..SolveSettings::new(MeshSettings::default(), BAND) };
+        let line = FeedLine { impedance: 50.0, length: 0.0, eps_r: 1.0, reference: 50.0 };
+        let pulse = Pulse::new(BAND[0], BAND[1]).expect("a band");
+        let whole = record(pulse, 20_000);
+        let mut looks = Looks::new(&settings, line, pulse, DT);
+        let n = (256..whole.total.len()).step_by(256).find(|&n| {
+            looks.look(&whole.until(n));
+            looks.is_met()
+        });
+        let n = n.expect("it is met");
+        (n, looks.lowest(&whole.until(n)).expect("a resonance")[0])
+    }
+
+    #[test]
+    fn settled_stops_well_before_the_decay_and_at_the_same_resonance() {
+        let (n_decay, at_decay) = stopped(StopRule::Decay { db: 40.0 });
+        let (n_settled, at_settled) = stopped(StopRule::Settled { tolerance: 5e-4 });
+        assert!(n_settled < n_decay * 3 / 4, "{n_settled} of {n_decay} steps");
+        assert!((at_settled / at_decay - 1.0).abs() < 5e-4, "{at_settled:e} {at_decay:e}");
+        assert!((at_settled / 11e9 - 1.0).abs() < 0.005, "{at_settled:e}");
+    }
+}
