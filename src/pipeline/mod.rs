@@ -11,6 +11,7 @@
 
 mod error;
 mod fields;
+pub mod job;
 pub mod live;
 mod mesh;
 pub mod mesh_job;
