@@ -19,8 +19,8 @@ pub(super) fn run(args: &SolveArgs, task: &Task) -> Result<()> {
     let mesh = MeshSettings { density: args.density.into(), metal: Metal::Sheet };
     let settings = SolveSettings::new(mesh, band(args.band.as_deref(), &project));
     let name = args.file.display();
-    let solved =
-        pipeline::solve(&project, args.shape.into(), &settings, task).with_context(|| format!("solving {name}"))?;
+    let solved = pipeline::solve(&project, args.shape.into(), &settings, &mut |_| (), task)
+        .with_context(|| format!("solving {name}"))?;
     let files = args.out.as_deref().map(|dir| write(&solved, &name.to_string(), dir)).transpose()?;
     let report = Report::new(&solved, files.unwrap_or_default());
     super::print(&if args.json { serde_json::to_string_pretty(&report)? } else { report.text() })

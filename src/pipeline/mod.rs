@@ -27,6 +27,6 @@ pub use fields::Fields;
 pub use mesh::{Density, MeshSettings, Meshed, Shape, mesh};
 pub use retreat::retreat;
 pub use scene::Scene;
-pub use solve::{SolveSettings, Solved, solve};
+pub use solve::{Running, SolveSettings, Solved, solve};
 pub use stages::{Deformed, Stages, apply_cage, deform, exact_cylinder, flat, run};
 pub use summary::{FiguresReport, summary};
