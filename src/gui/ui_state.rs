@@ -54,10 +54,12 @@ pub(super) enum RightTab {
     Figures,
     /// The tetrahedral mesh.
     Mesh,
+    /// The field solver.
+    Solve,
 }
 
 /// What the colours of a mesh show.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum MeshPaint {
     /// What the cells are made of.
     #[default]
@@ -67,13 +69,15 @@ pub(super) enum MeshPaint {
 }
 
 /// What is meshed, and how the mesh is looked at.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 #[allow(clippy::struct_excessive_bools, reason = "each is an independent switch of the view")]
 pub(super) struct MeshUi {
     pub(super) shape: Shape,
     pub(super) density: Density,
     pub(super) metal: Metal,
     /// Whether the view shows the mesh instead of the antenna.
+    #[serde(skip)]
     pub(super) shows: bool,
     /// Axis across which the mesh is cut.
     pub(super) axis: usize,
@@ -88,8 +92,10 @@ pub(super) struct MeshUi {
     /// Whether the worst cells are marked.
     pub(super) marks_worst: bool,
     /// The worst cell last chosen, by its place in the list.
+    #[serde(skip)]
     pub(super) chosen: Option<usize>,
     /// The camera of the view that is not on show.
+    #[serde(skip)]
     pub(super) other_camera: Option<Camera>,
 }
 
@@ -118,6 +124,47 @@ impl MeshUi {
     pub(super) fn keep_within(&mut self, bounds_mm: &[[f64; 2]; 3]) {
         let [lo, hi] = bounds_mm[self.axis];
         self.place_mm = self.place_mm.clamp(lo, hi);
+    }
+}
+
+/// What the plot of the reflection shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) enum Curve {
+    /// |S11| in dB.
+    #[default]
+    Magnitude,
+    /// Its phase.
+    Phase,
+}
+
+/// What is solved, and how the results are looked at.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub(super) struct SolveUi {
+    pub(super) shape: Shape,
+    pub(super) density: Density,
+    /// Ends of the band where the user chose them; else it lies around the antenna's resonance.
+    pub(super) band_ghz: Option<[f64; 2]>,
+    /// The run stops when the reflected voltage has fallen by this, dB (positive).
+    pub(super) decay_db: f64,
+    /// It stops after this time in the antenna at the latest.
+    pub(super) longest_ns: f64,
+    /// Whether the results are shown below the view.
+    pub(super) shows_results: bool,
+    pub(super) curve: Curve,
+}
+
+impl Default for SolveUi {
+    fn default() -> Self {
+        Self {
+            shape: Shape::default(),
+            density: Density::default(),
+            band_ghz: None,
+            decay_db: 40.0,
+            longest_ns: 4.0,
+            shows_results: false,
+            curve: Curve::default(),
+        }
     }
 }
 
@@ -153,8 +200,8 @@ pub(super) struct UiState {
     /// Where the last file or folder was.
     pub(super) last_folder: Option<std::path::PathBuf>,
     camera_kept: Option<SavedCamera>,
-    #[serde(skip)]
     pub(super) mesh: MeshUi,
+    pub(super) solve: SolveUi,
     /// Selected cage vertices.
     #[serde(skip)]
     pub(super) selection: BTreeSet<u32>,
@@ -188,6 +235,7 @@ impl Default for UiState {
             last_folder: None,
             camera_kept: None,
             mesh: MeshUi::default(),
+            solve: SolveUi::default(),
             selection: BTreeSet::new(),
             selects_by_box: false,
             camera: Camera::default(),
@@ -230,6 +278,7 @@ impl UiState {
 
     /// Puts the camera where it was in the last run, if that is a possible place.
     pub(super) fn restore_camera(&mut self) {
+        self.mesh.axis = self.mesh.axis.min(2);
         let Some(kept) = self.camera_kept else { return };
         let numbers = [kept.yaw, kept.pitch, kept.distance];
         if numbers.iter().chain(&kept.target).all(|v| v.is_finite()) && kept.distance > 0.0 {

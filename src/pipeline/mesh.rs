@@ -13,11 +13,12 @@ use crate::tet::{
     quality,
 };
 use crate::units::{C0, from_mm};
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::time::Instant;
 
 /// Which of an antenna's shapes is meshed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Shape {
     /// Carried through the posed cage, compensated as the project says.
     #[default]
@@ -29,7 +30,7 @@ pub enum Shape {
 }
 
 /// How fine a mesh is.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Density {
     /// For a first look.
     Coarse,

@@ -42,7 +42,7 @@ const PATCH_ID: usize = 5;
 const GROUND_ID: usize = 6;
 
 /// What the patch and the ground are made of.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Metal {
     /// Sheets without thickness: marked faces of the substrate.
     #[default]

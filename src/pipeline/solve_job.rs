@@ -1,0 +1,103 @@
+//! Solving in the background, with the curve as it comes.
+//!
+//! While the field runs, about once a second S11 of the record so far can be had ([`LiveRun`]), with the time left.
+
+use super::job::{Job, Work};
+use super::{PipelineError, Shape, SolveSettings, Solved, solve};
+use crate::project::Project;
+use crate::results::Sweep;
+use crate::task::Task;
+use std::time::{Duration, Instant};
+
+/// What is to be solved.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SolveRequest {
+    /// The project that the result will belong to.
+    pub project: Project,
+    /// Which of its shapes.
+    pub shape: Shape,
+    /// How.
+    pub settings: SolveSettings,
+}
+
+/// A run under way.
+#[derive(Clone, Debug)]
+pub struct LiveRun {
+    /// S11 of the record so far: rippled until the field has decayed; `None` while the pulse still comes in.
+    pub sweep: Option<Sweep>,
+    /// Number of cells.
+    pub n_tets: usize,
+    /// Steps done.
+    pub n_done: usize,
+    /// How far the reflected voltage has fallen, dB (negative); `None` while the pulse still comes in.
+    pub decay_db: Option<f64>,
+    /// Cells times steps per second.
+    pub speed: f64,
+    /// Time that is left, s, should the field go on to decay as it did.
+    pub seconds_left: f64,
+}
+
+/// The thread that solves.
+pub type SolveJob = Job<SolveRequest>;
+
+/// Frequencies of a live curve: as many as a plot has room for.
+const N_LIVE: usize = 200;
+/// A live curve is made at most this often: it costs a few steps of the field.
+const PAUSE: Duration = Duration::from_secs(1);
+
+impl Work for SolveRequest {
+    type Output = Solved;
+    type Live = LiveRun;
+    const NAME: &'static str = "solve";
+
+    fn work(&self, task: &Task, show: &dyn Fn(LiveRun)) -> Result<Solved, PipelineError> {
+        let mut shown: Option<Instant> = None;
+        let mut watch = |running: &super::Running<'_>| {
+            if shown.is_some_and(|last| last.elapsed() < PAUSE) {
+                return;
+            }
+            show(LiveRun {
+                sweep: running.decay_db.map(|_| running.sweep(N_LIVE)),
+                n_tets: running.n_tets,
+                n_done: running.record.total.len(),
+                decay_db: running.decay_db,
+                speed: running.speed,
+                seconds_left: running.seconds_left,
+            });
+            shown = Some(Instant::now());
+        };
+        solve(&self.project, self.shape, &self.settings, &mut watch, task)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pipeline::job::answer;
+    use crate::pipeline::{Density, MeshSettings};
+    use crate::units::GHZ;
+
+    #[test]
+    fn a_run_shows_its_curve_and_a_cancelled_one_is_not_answered() {
+        let mesh = MeshSettings { density: Density::Coarse, ..MeshSettings::default() };
+        let settings =
+            SolveSettings { longest: 1e-6, decay_db: 200.0, ..SolveSettings::new(mesh, [8.0 * GHZ, 13.0 * GHZ]) };
+        let request = SolveRequest { project: Project::default(), shape: Shape::Flat, settings };
+        let mut job = SolveJob::spawn(|| ());
+        job.request(request.clone());
+        let start = Instant::now();
+        let sweep = loop {
+            assert!(start.elapsed() < Duration::from_secs(300), "no curve");
+            if let Some(LiveRun { sweep: Some(sweep), .. }) = job.live() {
+                break sweep;
+            }
+            std::thread::sleep(Duration::from_millis(2));
+        };
+        assert_eq!(sweep.freqs.len(), N_LIVE + 1, "over the band");
+        assert!(sweep.s11.iter().all(|s| s.norm().is_finite()), "numbers");
+        job.cancel();
+        assert!(!job.is_busy() && job.live().is_none(), "idle at once");
+        job.request(SolveRequest { shape: Shape::Cylinder, ..request });
+        assert_eq!(answer(&mut job).result.unwrap_err(), PipelineError::NoCylinder.into(), "the next one is answered");
+    }
+}
