@@ -28,6 +28,7 @@ pub(super) enum Command {
     ShowMesh,
     Solve,
     ShowResults,
+    ShowPattern,
     ExportResults,
     Fit,
     LookFrom(StandardView),
@@ -53,6 +54,8 @@ pub(super) struct Facts {
     pub(super) is_solving: bool,
     pub(super) has_results: bool,
     pub(super) shows_results: bool,
+    pub(super) has_pattern: bool,
+    pub(super) shows_pattern: bool,
     pub(super) orthographic: bool,
     pub(super) shows_cage: bool,
     pub(super) sees_through: bool,
@@ -63,7 +66,7 @@ pub(super) struct Facts {
 
 impl Command {
     /// All commands, in the order of the menus.
-    pub(super) const ALL: [Self; 37] = [
+    pub(super) const ALL: [Self; 38] = [
         Self::New,
         Self::Open,
         Self::Save,
@@ -84,6 +87,7 @@ impl Command {
         Self::ShowMesh,
         Self::Solve,
         Self::ShowResults,
+        Self::ShowPattern,
         Self::ExportResults,
         Self::Fit,
         Self::LookFrom(StandardView::Front),
@@ -128,6 +132,7 @@ impl Command {
             Self::ShowMesh => ("Mesh view", "Show the mesh, cut open, instead of the antenna in its cage"),
             Self::Solve => ("Solve", "Compute the antenna's reflection over the band, in the background"),
             Self::ShowResults => ("Results", "Show reflection, Smith chart and figures of the runs below the view"),
+            Self::ShowPattern => ("3-D pattern", "Draw the radiation pattern around the antenna"),
             Self::ExportResults => ("Export results…", "Write a run's reflection as a table or a Touchstone file"),
             Self::Fit => ("Fit", "Show all of the antenna and its cage, or of the mesh"),
             Self::LookFrom(view) => match view {
@@ -176,6 +181,7 @@ impl Command {
             Self::ShowMesh => vec![plain(Key::V)],
             Self::Solve => vec![plain(Key::F5)],
             Self::ShowResults => vec![plain(Key::P)],
+            Self::ShowPattern => vec![plain(Key::L)],
             Self::ExportResults => vec![command_shift(Key::R)],
             Self::Fit => vec![plain(Key::F), plain(Key::Home)],
             Self::LookFrom(StandardView::Front) => vec![plain(Key::Num1)],
@@ -205,6 +211,7 @@ impl Command {
             Self::ExportMesh | Self::ShowMesh => facts.has_mesh,
             Self::Solve => !facts.is_solving,
             Self::ExportResults => facts.has_results,
+            Self::ShowPattern => facts.has_pattern,
             // There is no cage in the view of the mesh.
             Self::BoxSelect | Self::ShowCage | Self::SeeThrough => !facts.shows_mesh,
             _ => true,
@@ -217,6 +224,7 @@ impl Command {
             Self::Orthographic => Some(facts.orthographic),
             Self::ShowMesh => Some(facts.shows_mesh),
             Self::ShowResults => Some(facts.shows_results),
+            Self::ShowPattern => Some(facts.shows_pattern),
             Self::ShowCage => Some(facts.shows_cage),
             Self::SeeThrough => Some(facts.sees_through),
             Self::ShowLog => Some(facts.shows_log),

@@ -6,49 +6,14 @@
 use super::mesh_session::{density_text, grouped};
 use super::theme::N_SERIES;
 use super::ui_state::SolveUi;
-use crate::pipeline::solve_job::{LiveRun, SolveJob, SolveRequest};
-use crate::pipeline::{Density, MeshSettings, Shape, SolveSettings, Solved};
+use crate::pipeline::solve_job::{LiveRun, RunResult, SolveJob, SolveRequest};
+use crate::pipeline::{Density, MeshSettings, Shape, SolveSettings};
 use crate::project::{BendPlane, CompensationMode, PresetSpec, Project};
-use crate::results::{Resonance, Sweep};
 use crate::task::Progress;
 use crate::tet::Metal;
 use crate::units::{C0, GHZ};
 use std::collections::BTreeSet;
 use std::time::Instant;
-
-/// What is kept of a solved antenna: the mesh is not.
-#[derive(Clone, Debug)]
-pub(super) struct RunResult {
-    pub(super) sweep: Sweep,
-    pub(super) resonance: Option<Resonance>,
-    /// The port's impedance as meshed, ohm.
-    pub(super) port_impedance: f64,
-    pub(super) n_tets: usize,
-    pub(super) n_steps: usize,
-    /// Time step, s.
-    pub(super) dt: f64,
-    /// How far the reflected voltage had fallen, dB (negative).
-    pub(super) residual_db: f64,
-    /// Cells times steps per second.
-    pub(super) speed: f64,
-    pub(super) seconds: f64,
-}
-
-impl From<Solved> for RunResult {
-    fn from(solved: Solved) -> Self {
-        Self {
-            resonance: solved.sweep.resonance(),
-            sweep: solved.sweep,
-            port_impedance: solved.port_impedance,
-            n_tets: solved.meshed.mesh.tets.len(),
-            n_steps: solved.record.total.len(),
-            dt: solved.record.dt,
-            residual_db: solved.residual_db,
-            speed: solved.speed,
-            seconds: solved.seconds,
-        }
-    }
-}
 
 /// A finished run, a number that tells it from others, and how it is shown.
 #[derive(Clone, Debug)]
@@ -67,7 +32,9 @@ impl FinishedRun {
     pub(super) fn is_stale(&self, project: &Project) -> bool {
         let then = &self.request.project;
         match self.request.shape {
-            Shape::Flat => then.antenna != project.antenna || then.settings.tolerance_mm != project.settings.tolerance_mm,
+            Shape::Flat => {
+                then.antenna != project.antenna || then.settings.tolerance_mm != project.settings.tolerance_mm
+            }
             Shape::Deformed | Shape::Cylinder => then != project,
         }
     }
@@ -192,15 +159,14 @@ impl SolveSession {
         let reply = self.job.poll()?;
         self.live = None;
         match reply.result {
-            Ok(solved) => {
-                let result = RunResult::from(*solved);
+            Ok(result) => {
                 let cells = grouped(result.n_tets);
                 let found = match &result.resonance {
                     Some(r) => format!("{:.1} dB at {:.3} GHz", r.depth_db, r.freq / GHZ),
                     None => "no resonance in the band".to_owned(),
                 };
                 let news = SolveNews::Done(format!("Solved: {found}, {cells} cells in {:.0} s", result.seconds));
-                self.add(reply.request, result);
+                self.add(reply.request, *result);
                 Some(news)
             }
             Err(error) => {
@@ -216,7 +182,11 @@ impl SolveSession {
 pub(super) fn request(project: &Project, chosen: &SolveUi) -> SolveRequest {
     let mesh = MeshSettings { density: chosen.density, metal: Metal::Sheet };
     let band = chosen.band_ghz.unwrap_or_else(|| usual_band_ghz(project)).map(|f| f * GHZ);
-    let stop = SolveSettings { decay_db: chosen.decay_db, longest: chosen.longest_ns * 1e-9, ..SolveSettings::new(mesh, band) };
+    let stop = SolveSettings {
+        decay_db: chosen.decay_db,
+        longest: chosen.longest_ns * 1e-9,
+        ..SolveSettings::new(mesh, band)
+    };
     SolveRequest { project: project.clone(), shape: chosen.shape, settings: stop }
 }
 

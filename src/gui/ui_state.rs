@@ -137,6 +137,26 @@ pub(super) enum Curve {
     Phase,
 }
 
+/// Which results are shown below the view.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) enum ResultTab {
+    /// S11, Smith chart and their figures.
+    #[default]
+    Reflection,
+    /// Far field.
+    Pattern,
+}
+
+/// Which part of the far field the polar plots show.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) enum Polarization {
+    /// Both together.
+    #[default]
+    Total,
+    /// Along the flat patch's resonant length, and across it beside.
+    Parts,
+}
+
 /// What is solved, and how the results are looked at.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -151,7 +171,17 @@ pub(super) struct SolveUi {
     pub(super) longest_ns: f64,
     /// Whether the results are shown below the view.
     pub(super) shows_results: bool,
+    pub(super) tab: ResultTab,
     pub(super) curve: Curve,
+    pub(super) polarization: Polarization,
+    /// Decibels from the rim of a pattern to its middle.
+    pub(super) range_db: f64,
+    /// Whether the pattern is drawn around the antenna.
+    #[serde(skip)]
+    pub(super) shows_pattern: bool,
+    /// Frequency of the patterns, Hz; the resonance's where it is `None`.
+    #[serde(skip)]
+    pub(super) pattern_freq: Option<f64>,
 }
 
 impl Default for SolveUi {
@@ -163,7 +193,12 @@ impl Default for SolveUi {
             decay_db: 40.0,
             longest_ns: 4.0,
             shows_results: false,
+            tab: ResultTab::default(),
             curve: Curve::default(),
+            polarization: Polarization::default(),
+            range_db: 30.0,
+            shows_pattern: false,
+            pattern_freq: None,
         }
     }
 }

@@ -5,7 +5,7 @@
 use super::job::{Job, Work};
 use super::{PipelineError, Shape, SolveSettings, Solved, solve};
 use crate::project::Project;
-use crate::results::Sweep;
+use crate::results::{Cut, CutPlane, FarField, Resonance, Sweep};
 use crate::task::Task;
 use std::time::{Duration, Instant};
 
@@ -37,6 +37,65 @@ pub struct LiveRun {
     pub seconds_left: f64,
 }
 
+/// What is kept of a solved antenna: the mesh is not.
+#[derive(Clone, Debug)]
+pub struct RunResult {
+    /// S11 at the ground's top, 50 ohm.
+    pub sweep: Sweep,
+    /// Resonance and band by the smallest |S11|.
+    pub resonance: Option<Resonance>,
+    /// The port's impedance as meshed, ohm.
+    pub port_impedance: f64,
+    /// Number of cells.
+    pub n_tets: usize,
+    /// Steps done.
+    pub n_steps: usize,
+    /// Time step, s.
+    pub dt: f64,
+    /// How far the reflected voltage had fallen, dB (negative).
+    pub residual_db: f64,
+    /// Cells times steps per second.
+    pub speed: f64,
+    /// Time spent, s.
+    pub seconds: f64,
+    /// Far fields, by ascending frequency.
+    pub patterns: Vec<Pattern>,
+}
+
+impl From<Solved> for RunResult {
+    fn from(solved: Solved) -> Self {
+        Self {
+            resonance: solved.sweep.resonance(),
+            sweep: solved.sweep,
+            port_impedance: solved.port_impedance,
+            n_tets: solved.meshed.mesh.tets.len(),
+            n_steps: solved.record.total.len(),
+            dt: solved.record.dt,
+            residual_db: solved.residual_db,
+            speed: solved.speed,
+            seconds: solved.seconds,
+            patterns: Vec::new(),
+        }
+    }
+}
+
+/// A far field with what a picture of it needs.
+#[derive(Clone, Debug)]
+pub struct Pattern {
+    /// The field.
+    pub field: FarField,
+    /// Directivity around the E and the H plane.
+    pub cuts: [Cut; 2],
+    /// Greatest directivity, dBi, with its theta and phi.
+    pub max: (f64, [f64; 2]),
+}
+
+impl From<FarField> for Pattern {
+    fn from(field: FarField) -> Self {
+        Self { cuts: [CutPlane::E, CutPlane::H].map(|plane| field.cut(plane)), max: field.max_directivity(), field }
+    }
+}
+
 /// The thread that solves.
 pub type SolveJob = Job<SolveRequest>;
 
@@ -46,11 +105,11 @@ const N_LIVE: usize = 200;
 const PAUSE: Duration = Duration::from_secs(1);
 
 impl Work for SolveRequest {
-    type Output = Solved;
+    type Output = RunResult;
     type Live = LiveRun;
     const NAME: &'static str = "solve";
 
-    fn work(&self, task: &Task, show: &dyn Fn(LiveRun)) -> Result<Solved, PipelineError> {
+    fn work(&self, task: &Task, show: &dyn Fn(LiveRun)) -> Result<RunResult, PipelineError> {
         let mut shown: Option<Instant> = None;
         let mut watch = |running: &super::Running<'_>| {
             if shown.is_some_and(|last| last.elapsed() < PAUSE) {
@@ -66,7 +125,7 @@ impl Work for SolveRequest {
             });
             shown = Some(Instant::now());
         };
-        solve(&self.project, self.shape, &self.settings, &mut watch, task)
+        Ok(solve(&self.project, self.shape, &self.settings, &mut watch, task)?.into())
     }
 }
 
