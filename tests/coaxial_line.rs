@@ -2,10 +2,11 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test")]
 
 use conformant::geometry::{DVec3, Region, RegionId, RegionRole, VertexId};
+use conformant::io::checkpoint;
 use conformant::results::{FeedLine, Sweep, frequencies, sweep};
 use conformant::task::Task;
 use conformant::tet::{FaceGroup, FaceRole, SizingSettings, Surface, SurfaceFacet, TetMesh, fill};
-use conformant::tlm::{Network, NetworkSettings, Pulse, Run, StepLimit};
+use conformant::tlm::{Network, NetworkSettings, Pulse, Run, StepLimit, TlmError};
 use conformant::units::{C0, ETA0};
 use nalgebra::Complex;
 use std::f64::consts::{PI, TAU};
@@ -131,4 +132,31 @@ fn the_field_is_the_same_bits_on_any_number_of_threads() {
         pool.install(|| reflection(&mesh, 0.0, StepLimit::Exact).0)
     };
     assert_eq!(run(1), run(3), "one and three threads");
+}
+
+#[test]
+fn a_resumed_run_has_the_bits_of_an_uninterrupted_one_and_belongs_to_its_network_alone() {
+    let task = Task::default();
+    let network = |far_end| {
+        let settings = NetworkSettings { loss_freq: 10e9, step: StepLimit::Clip(0.003) };
+        Network::new(&line(16, 2, 8, far_end), &settings, &task).unwrap()
+    };
+    let (open, pulse) = (network(FaceRole::Outer), Pulse::new(5e9, 15e9).unwrap());
+    let mut straight = Run::new(&open, pulse);
+    straight.advance(1200, &task).unwrap();
+    let mut first = Run::new(&open, pulse);
+    first.advance(600, &task).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("line.checkpoint");
+    checkpoint::write(&first.checkpoint(), &path).unwrap();
+    let kept = checkpoint::read(&path).unwrap();
+    let mut resumed = Run::resume(&open, pulse, &kept).unwrap();
+    resumed.advance(600, &task).unwrap();
+    let (end, expected) = (resumed.checkpoint(), straight.checkpoint());
+    assert!(expected.record.total.iter().any(|v| v.abs() > 0.1), "there is a field");
+    assert_eq!((end.record, end.field), (expected.record, expected.field), "the same bits");
+    let shorted = network(FaceRole::Conductor);
+    for refused in [Run::resume(&shorted, pulse, &kept), Run::resume(&open, Pulse::new(5e9, 16e9).unwrap(), &kept)] {
+        assert_eq!(refused.unwrap_err(), TlmError::ForeignCheckpoint, "another end, another band");
+    }
 }

@@ -34,6 +34,8 @@ pub enum Command {
     Mesh(MeshArgs),
     /// Solve the field of the antenna and report its reflection
     Solve(SolveArgs),
+    /// Solve flat, exact cylinder, uncompensated, WL and isometric in one go, and compare
+    Compare(CompareArgs),
     /// Prove an export's certificate anew from its files
     Verify(VerifyArgs),
     /// Compute the surface error over bend radius for many cages, as tables and plots
@@ -194,9 +196,41 @@ pub struct SolveArgs {
     /// Lower and upper end of the band, GHz [default: two thirds to four thirds of the patch's cavity resonance]
     #[arg(long, value_names = ["LO", "HI"], num_args = 2)]
     pub(super) band: Option<Vec<f64>>,
+    /// When the run stops
+    #[arg(long, default_value = "decay")]
+    pub(super) stop: StopChoice,
+    /// Go on where the same run was interrupted
+    #[arg(long)]
+    pub(super) resume: bool,
     /// Write S11 as table, Touchstone and plot into this folder; made where it is missing
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
+    /// Print JSON
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+/// Arguments of `compare`.
+#[derive(Debug, Args)]
+pub struct CompareArgs {
+    /// Project file; its results are kept beside it
+    #[arg(required_unless_present = "paper", conflicts_with = "paper")]
+    pub(super) file: Option<PathBuf>,
+    /// The paper's antenna instead: bent to 10 and 6.5 mm in both planes, and in the shapes of section VI
+    #[arg(long, value_name = "WHICH", num_args = 0..=1, default_missing_value = "all")]
+    pub(super) paper: Option<PaperChoice>,
+    /// Folder for table, Touchstone files and plots; made where it is missing
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: PathBuf,
+    /// How fine the meshes are
+    #[arg(long, default_value = "default")]
+    pub(super) density: DensityChoice,
+    /// Lower and upper end of the band, GHz [default: two thirds to four thirds of the patch's cavity resonance]
+    #[arg(long, value_names = ["LO", "HI"], num_args = 2)]
+    pub(super) band: Option<Vec<f64>>,
+    /// When each run stops
+    #[arg(long, default_value = "decay")]
+    pub(super) stop: StopChoice,
     /// Print JSON
     #[arg(long)]
     pub(super) json: bool,
@@ -319,6 +353,25 @@ pub(super) enum DensityChoice {
     Default,
     /// To see what a finer mesh would change
     Fine,
+}
+
+/// When a run stops.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum StopChoice {
+    /// The reflected voltage is 40 dB down
+    Decay,
+    /// S11 of the record continued by its resonances stays where it is
+    Settled,
+}
+
+/// Which of the paper's antennas.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum PaperChoice {
+    /// Figures 10 to 13: bends
+    Bends,
+    /// Figures 14 to 16: convex, concave, saddle and twist
+    Shapes,
+    All,
 }
 
 /// What patch and ground are made of.

@@ -9,6 +9,7 @@
 
 mod apply;
 mod args;
+mod compare;
 mod deform;
 mod example;
 mod export;
@@ -18,6 +19,7 @@ mod new;
 mod plot;
 mod progress;
 mod report;
+mod runs;
 mod solve;
 mod study;
 
@@ -94,6 +96,7 @@ fn dispatch(command: Command, task: &Task) -> Result<ExitCode> {
         Command::Export(args) => export::export(&args, task)?,
         Command::Mesh(args) => mesh::run(&args, task)?,
         Command::Solve(args) => solve::run(&args, task)?,
+        Command::Compare(args) => compare::run(&args, task)?,
         Command::Verify(args) => return Ok(if export::verify(&args)? { ExitCode::SUCCESS } else { FAULTS.into() }),
         Command::Study(args) => study::run(&args, task)?,
         Command::Info(args) => info::run(&args)?,

@@ -2,38 +2,31 @@
 
 use super::args::SolveArgs;
 use super::plot::{Axis, Figure, Panel, Point, Series, Style};
+use super::runs::{self, Resume};
 use super::study::palette;
 use crate::io::{csv, touchstone};
-use crate::pipeline::{self, MeshSettings, SolveSettings, Solved};
-use crate::project::{Project, file};
+use crate::pipeline::{Solved, results_dir};
+use crate::project::file;
 use crate::results::Resonance;
 use crate::task::Task;
-use crate::tet::Metal;
-use crate::units::{C0, GHZ};
+use crate::units::GHZ;
 use anyhow::{Context, Result};
 use serde::Serialize;
 use std::path::Path;
 
 pub(super) fn run(args: &SolveArgs, task: &Task) -> Result<()> {
     let project = file::read(&args.file)?;
-    let mesh = MeshSettings { density: args.density.into(), metal: Metal::Sheet };
-    let settings = SolveSettings::new(mesh, band(args.band.as_deref(), &project));
+    let settings = runs::settings(&project, args.density.into(), args.band.as_deref(), args.stop);
     let name = args.file.display();
-    let solved = pipeline::solve(&project, args.shape.into(), &settings, &mut |_| (), task)
+    let dir = results_dir(&args.file);
+    let resume = if args.resume { Resume::Must } else { Resume::Never };
+    let (solved, stored) = runs::solve(&project, args.shape.into(), &settings, &dir, resume, task)
         .with_context(|| format!("solving {name}"))?;
-    let files = args.out.as_deref().map(|dir| write(&solved, &name.to_string(), dir)).transpose()?;
-    let report = Report::new(&solved, files.unwrap_or_default());
+    let mut files = vec![stored.job().result_path(&dir).display().to_string()];
+    files
+        .extend(args.out.as_deref().map(|dir| write(&solved, &name.to_string(), dir)).transpose()?.unwrap_or_default());
+    let report = Report::new(&solved, files);
     super::print(&if args.json { serde_json::to_string_pretty(&report)? } else { report.text() })
-}
-
-/// The band in Hz: as given, or around the resonance of an ideal cavity under the patch.
-fn band(given_ghz: Option<&[f64]>, project: &Project) -> [f64; 2] {
-    if let Some(&[lo, hi]) = given_ghz {
-        return [lo * GHZ, hi * GHZ];
-    }
-    let params = project.antenna.to_params();
-    let cavity = C0 / (2.0 * params.length * params.substrate.eps_r.sqrt());
-    [cavity * 2.0 / 3.0, cavity * 4.0 / 3.0]
 }
 
 /// Writes table, Touchstone file and plot; returns their names.
@@ -86,12 +79,20 @@ struct Report {
     /// Ends of the stretch below -10 dB; null where |S11| does not fall so far, or it reaches beyond the band.
     band_10_db_ghz: Option<[f64; 2]>,
     bandwidth_10_db_mhz: Option<f64>,
+    /// Frequency of the strongest resonance by fit, and how far fits to parts of the record differ.
+    fitted_resonance_ghz: Option<f64>,
+    fitted_resonance_error_ghz: Option<f64>,
+    /// Its quality factor, loaded by the line.
+    q: Option<f64>,
+    q_error: Option<f64>,
     port_impedance_ohm: f64,
     tets: usize,
     clipped_cells: usize,
     dt_ps: f64,
     steps: usize,
     residual_db: f64,
+    /// Whether the stop rule was met.
+    is_settled: bool,
     tet_steps_per_second: f64,
     seconds: f64,
     files: Vec<String>,
@@ -106,12 +107,17 @@ impl Report {
             s11_min_db: found.map(|r| r.depth_db),
             band_10_db_ghz: band.map(|b| b.map(|f| f / GHZ)),
             bandwidth_10_db_mhz: band.map(|[lo, hi]| (hi - lo) / 1e6),
+            fitted_resonance_ghz: solved.fitted.map(|f| f.freq / GHZ),
+            fitted_resonance_error_ghz: solved.fitted.map(|f| f.freq_error / GHZ),
+            q: solved.fitted.map(|f| f.q),
+            q_error: solved.fitted.map(|f| f.q_error),
             port_impedance_ohm: solved.port_impedance,
             tets: solved.meshed.mesh.tets.len(),
             clipped_cells: solved.n_clipped,
             dt_ps: solved.record.dt * 1e12,
             steps: solved.record.total.len(),
             residual_db: solved.residual_db,
+            is_settled: solved.is_settled,
             tet_steps_per_second: solved.speed,
             seconds: solved.seconds,
             files,
@@ -121,13 +127,15 @@ impl Report {
     fn text(&self) -> String {
         let or = |text: Option<String>| text.unwrap_or_else(|| "none in the band".to_owned());
         let band = self.band_10_db_ghz.zip(self.bandwidth_10_db_mhz);
+        let warning = if self.is_settled { "" } else { ": stopped before its rule was met" };
         let mut lines = vec![
             format!("resonance     {}", or(self.resonance_ghz.map(|f| format!("{f:.4} GHz (smallest |S11|)")))),
             format!("|S11|         {}", or(self.s11_min_db.map(|db| format!("{db:.2} dB")))),
             format!("-10 dB band   {}", or(band.map(|([lo, hi], w)| format!("{w:.0} MHz, {lo:.4} to {hi:.4} GHz")))),
+            format!("by fit        {}", self.fitted_text()),
             format!("port          {:.3} ohm as meshed", self.port_impedance_ohm),
             format!(
-                "field         {} tetrahedra, {} steps of {:.4} ps, {} cells clipped, decayed to {:.1} dB",
+                "field         {} tetrahedra, {} steps of {:.4} ps, {} cells clipped, decayed to {:.1} dB{warning}",
                 self.tets, self.steps, self.dt_ps, self.clipped_cells, self.residual_db
             ),
             format!("time          {:.1} s, {:.1} million tet-steps/s", self.seconds, self.tet_steps_per_second / 1e6),
@@ -136,5 +144,17 @@ impl Report {
             lines.push(format!("wrote         {}", self.files.join(", ")));
         }
         lines.join("\n")
+    }
+
+    fn fitted_text(&self) -> String {
+        let freq = self.fitted_resonance_ghz.zip(self.fitted_resonance_error_ghz);
+        freq.zip(self.q.zip(self.q_error)).map_or_else(
+            || "none in the band".to_owned(),
+            |((freq, freq_error), (q, q_error))| {
+                format!(
+                    "{freq:.4} +- {freq_error:.4} GHz, Q {q:.2} +- {q_error:.2} (strongest mode, loaded by the line)"
+                )
+            },
+        )
     }
 }

@@ -16,14 +16,18 @@
 //! shared facet by facet, no T-junction, no gap, no crossing; [`verify()`] proves it anew. Every file is written whole
 //! or not at all ([`write_atomic`]).
 //!
+//! A field run under way is kept as a [`checkpoint`].
+//!
 //! Files are millimetres except glTF (metres, as its standard demands). Readers refuse rather than guess, say the
 //! place, and take memory in proportion to the file's length only. Closed solids of other programs are not imported:
 //! their formats have no materials.
 
 mod atomic;
 mod certificate;
+pub mod checkpoint;
 pub mod csv;
 mod decimal;
+pub mod document;
 mod error;
 mod export;
 pub mod gltf;

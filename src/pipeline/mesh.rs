@@ -19,6 +19,7 @@ use std::time::Instant;
 
 /// Which of an antenna's shapes is meshed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Shape {
     /// Carried through the posed cage, compensated as the project says.
     #[default]
@@ -31,6 +32,7 @@ pub enum Shape {
 
 /// How fine a mesh is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Density {
     /// For a first look.
     Coarse,
@@ -42,7 +44,8 @@ pub enum Density {
 }
 
 /// What a mesh is made like.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct MeshSettings {
     /// How fine.
     pub density: Density,
@@ -75,16 +78,16 @@ const GRADING: f64 = 0.35;
 const RETRIES: usize = 4;
 
 /// Edge lengths by density, as parts of the patch's length, and layers of the substrate.
-struct Fineness {
-    rim: f64,
-    inner: f64,
-    layers: usize,
+pub(super) struct Fineness {
+    pub(super) rim: f64,
+    pub(super) inner: f64,
+    pub(super) layers: usize,
     /// Edges per wavelength in air at the top of the band.
     per_wavelength: f64,
 }
 
 impl Density {
-    fn fineness(self) -> Fineness {
+    pub(super) fn fineness(self) -> Fineness {
         match self {
             Self::Coarse => Fineness { rim: 1.0 / 10.0, inner: 1.0 / 6.0, layers: 2, per_wavelength: 7.0 },
             Self::Default => Fineness { rim: 1.0 / 20.0, inner: 1.0 / 10.0, layers: 4, per_wavelength: 10.0 },
@@ -196,13 +199,22 @@ fn map_distance(
     Ok(edges.iter().zip(images).map(|(e, p)| middle(&block.vertices, e).distance(p)).fold(0.0, f64::max))
 }
 
-/// The air: edges of a tenth of the wavelength at the top of the band, and half a wavelength of room.
+/// First resonance of an ideal cavity under the patch, Hz.
+fn cavity(params: &PatchParams) -> f64 {
+    C0 / (2.0 * params.length * params.substrate.eps_r.sqrt())
+}
+
+/// Longest edges in the air, m: a tenth or so of the wavelength at the top of the band.
+pub(super) fn longest_air_edge(params: &PatchParams, density: Density) -> f64 {
+    C0 / (TOP_OVER_CAVITY * cavity(params)) / density.fineness().per_wavelength
+}
+
+/// The air: half a wavelength of room.
 fn air(params: &PatchParams, block: &Block, settings: MeshSettings) -> AirSettings {
-    let cavity = C0 / (2.0 * params.length * params.substrate.eps_r.sqrt());
-    let h_max = C0 / (TOP_OVER_CAVITY * cavity) / settings.density.fineness().per_wavelength;
+    let h_max = longest_air_edge(params, settings.density);
     let (lo, hi) =
         block.vertices.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), &p| (lo.min(p), hi.max(p)));
     let center = (lo + hi) / 2.0;
     let reach = block.vertices.iter().map(|p| p.distance(center)).fold(0.0, f64::max);
-    AirSettings { radius: reach + C0 / cavity / 2.0, sizing: SizingSettings { h_max, grading: GRADING } }
+    AirSettings { radius: reach + C0 / cavity(params) / 2.0, sizing: SizingSettings { h_max, grading: GRADING } }
 }

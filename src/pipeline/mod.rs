@@ -11,9 +11,11 @@
 //! [`SolveJob`](solve_job::SolveJob) solves the field in them.
 
 mod error;
+mod estimate;
 mod fields;
 pub mod job;
 pub mod live;
+mod looks;
 mod mesh;
 pub mod mesh_job;
 mod retreat;
@@ -21,14 +23,17 @@ mod scene;
 mod solve;
 pub mod solve_job;
 mod stages;
+mod stored;
 mod summary;
 pub mod worker;
 
 pub use error::PipelineError;
+pub use estimate::{Estimate, estimate};
 pub use fields::Fields;
 pub use mesh::{Density, MeshSettings, Meshed, Shape, mesh};
 pub use retreat::retreat;
 pub use scene::Scene;
-pub use solve::{Running, SolveSettings, Solved, solve};
+pub use solve::{Running, SolveSettings, Solved, StopRule, solve};
 pub use stages::{Deformed, Stages, apply_cage, deform, exact_cylinder, flat, run};
+pub use stored::{Job, RunFigures, Stored, results_dir};
 pub use summary::{FiguresReport, summary};

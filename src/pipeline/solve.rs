@@ -1,33 +1,53 @@
 //! From a project to S11: mesh, network, run, sweep.
 
 use super::PipelineError;
+use super::looks::Looks;
 use super::mesh::{MeshSettings, Meshed, Shape, mesh};
 use crate::project::Project;
-use crate::results::{FeedLine, Sweep, frequencies, sweep};
+use crate::results::{FeedLine, FittedResonance, Sweep, continued_sweep, fit, fitted_resonance, frequencies, sweep};
 use crate::task::Task;
-use crate::tlm::{Network, NetworkSettings, Pulse, Record, Run, StepLimit};
+use crate::tlm::{Checkpoint, Network, NetworkSettings, Pulse, Record, Run, StepLimit};
 use crate::units::from_mm;
+use serde::{Deserialize, Serialize};
 use std::time::{Duration, Instant};
 
 /// What is solved.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct SolveSettings {
     /// The mesh.
     pub mesh: MeshSettings,
     /// Lower and upper end of the band, Hz.
     pub band: [f64; 2],
-    /// The run stops when the reflected voltage has fallen by this, dB (positive).
-    pub decay_db: f64,
+    /// When the run stops.
+    pub stop: StopRule,
     /// It stops after this time at the latest, s.
     pub longest: f64,
 }
 
 impl SolveSettings {
-    /// The usual stop rules.
+    /// The usual stop rule: the reflected voltage 40 dB down.
     #[must_use]
     pub fn new(mesh: MeshSettings, band: [f64; 2]) -> Self {
-        Self { mesh, band, decay_db: 40.0, longest: 4e-9 }
+        Self { mesh, band, stop: StopRule::Decay { db: 40.0 }, longest: 4e-9 }
     }
+}
+
+/// When a run stops.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum StopRule {
+    /// The reflected voltage has fallen by this, dB (positive). S11 is that of the record as it stands.
+    Decay {
+        /// How far, dB.
+        db: f64,
+    },
+    /// The smallest |S11| of the record continued by its fitted modes stays where it is over some looks. S11 is that of
+    /// the continued record.
+    Settled {
+        /// Greatest difference of its frequency, relative; ten times as much is allowed to |S11| itself.
+        tolerance: f64,
+    },
 }
 
 /// A solved antenna.
@@ -41,6 +61,10 @@ pub struct Solved {
     pub record: Record,
     /// The port's impedance as meshed, ohm: how well the line's circles are meshed.
     pub port_impedance: f64,
+    /// The strongest resonance in the band by fit to the late record, where there is one.
+    pub fitted: Option<FittedResonance>,
+    /// Whether the stop rule was met; else the run ended at its longest.
+    pub is_settled: bool,
     /// Cells whose stubs were clipped for a longer step.
     pub n_clipped: usize,
     /// How far the reflected voltage had fallen, dB (negative).
@@ -55,7 +79,7 @@ pub struct Solved {
 const REFERENCE: f64 = 50.0;
 /// Share of cells whose stubs are clipped: doubles the step, shifts no resonance visibly.
 const CLIPPED: f64 = 0.003;
-/// Steps between two looks at the decay.
+/// Steps between two looks at the stop rule.
 const STRIDE: usize = 256;
 /// Distance of the frequencies, Hz.
 const RESOLUTION: f64 = 5e6;
@@ -65,6 +89,7 @@ const WATCH: Duration = Duration::from_millis(500);
 /// A run under way, for whoever watches it.
 #[derive(Clone, Copy, Debug)]
 pub struct Running<'a> {
+    pub(super) run: &'a Run<'a>,
     /// The port's time series so far.
     pub record: &'a Record,
     /// The line between port and antenna.
@@ -79,10 +104,13 @@ pub struct Running<'a> {
     pub decay_db: Option<f64>,
     /// Cells times steps per second.
     pub speed: f64,
-    /// Time until the stop rule is met, s, should the field go on to decay as it did; at most [`Self::seconds_most`].
+    /// Time until the reflected voltage is 40 dB down or as far as the stop rule says, s, should the field go on to
+    /// decay as it did; at most [`Self::seconds_most`].
     pub seconds_left: f64,
     /// Time until the last step there can be, s.
     pub seconds_most: f64,
+    /// Whether the run goes on; false as it ends or is called off.
+    pub goes_on: bool,
 }
 
 impl Running<'_> {
@@ -92,11 +120,18 @@ impl Running<'_> {
         let [lo, hi] = self.band;
         sweep(self.record, &self.line, &frequencies(lo, hi, (hi - lo) / n_freqs.max(1) as f64))
     }
+
+    /// What it takes to go on later.
+    #[must_use]
+    pub fn checkpoint(&self) -> Checkpoint {
+        self.run.checkpoint()
+    }
 }
 
 /// Meshes and solves an antenna.
 ///
-/// * `watch`: told of the run under way, about twice a second and once at its end.
+/// * `resume`: the state of an earlier run of the same to go on from.
+/// * `watch`: told of the run under way, about twice a second and once at its end, also when it is called off.
 ///
 /// # Errors
 /// [`PipelineError`] naming what to change.
@@ -104,6 +139,7 @@ pub fn solve(
     project: &Project,
     shape: Shape,
     settings: &SolveSettings,
+    resume: Option<&Checkpoint>,
     watch: &mut dyn FnMut(&Running<'_>),
     task: &Task,
 ) -> Result<Solved, PipelineError> {
@@ -114,15 +150,27 @@ pub fn solve(
     let network =
         Network::new(&meshed.mesh, &NetworkSettings { loss_freq: pulse.center, step: StepLimit::Clip(CLIPPED) }, task)?;
     let line = feed_line(project, network.port_impedance);
-    let mut run = Run::new(&network, pulse);
-    let mut watched = Watched { settings, line, n_tets: network.n_tets, looks: Vec::new(), told: None, watch };
-    watched.run(&mut run, pulse, task)?;
+    let mut run = match resume {
+        None => Run::new(&network, pulse),
+        Some(checkpoint) => Run::resume(&network, pulse, checkpoint)?,
+    };
+    let mut progress = Looks::new(settings, line, pulse, network.dt);
+    drive(&mut run, &mut progress, watch, task)?;
+    let record = run.record();
+    let freqs = frequencies(lo, hi, RESOLUTION);
+    let continued = match settings.stop {
+        StopRule::Decay { .. } => None,
+        StopRule::Settled { .. } => fit(record, progress.n_pulse, hi),
+    };
     Ok(Solved {
-        sweep: sweep(run.record(), &line, &frequencies(lo, hi, RESOLUTION)),
-        record: run.record().clone(),
+        sweep: continued
+            .map_or_else(|| sweep(record, &line, &freqs), |modes| continued_sweep(record, &modes, &line, &freqs)),
+        fitted: fitted_resonance(record, progress.n_pulse, settings.band),
+        record: record.clone(),
         port_impedance: network.port_impedance,
+        is_settled: progress.is_met(),
         n_clipped: network.n_clipped,
-        residual_db: watched.looks.last().map_or(0.0, |&(_, db)| db),
+        residual_db: progress.looks.last().map_or(0.0, |look| look.db),
         speed: run.speed(),
         seconds: started.elapsed().as_secs_f64(),
         meshed,
@@ -138,69 +186,35 @@ fn feed_line(project: &Project, impedance: f64) -> FeedLine {
     }
 }
 
-/// A run with its stop rule and its listener.
-struct Watched<'a> {
-    settings: &'a SolveSettings,
-    line: FeedLine,
-    n_tets: usize,
-    /// Steps done and how far the reflected voltage had fallen by then, dB, since the pulse was over.
-    looks: Vec<(usize, f64)>,
-    told: Option<Instant>,
-    watch: &'a mut dyn FnMut(&Running<'_>),
-}
-
-impl Watched<'_> {
-    /// Runs until the stop rule is met.
-    fn run(&mut self, run: &mut Run<'_>, pulse: Pulse, task: &Task) -> Result<(), PipelineError> {
-        // One period at the lower end of the band holds every oscillation's peak.
-        let window = 1.0 / self.settings.band[0];
-        let dt = run.record().dt;
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some ten thousand steps")]
-        let steps = |time: f64| (time / dt).ceil() as usize;
-        let n_most = steps(self.settings.longest);
-        let phase = task.phase("running the field", n_most);
-        let mut is_over = false;
-        while !is_over {
-            let advanced = run.advance(STRIDE, task);
-            phase.advance(STRIDE);
-            let n_done = run.record().total.len();
-            if n_done > steps(pulse.end() + window) {
-                self.looks.push((n_done, 20.0 * run.record().residual(window).log10()));
-            }
-            let has_decayed = self.looks.last().is_some_and(|&(_, db)| db < -self.settings.decay_db);
-            is_over = has_decayed || n_done >= n_most || advanced.is_err();
-            if is_over || self.told.is_none_or(|last| last.elapsed() >= WATCH) {
-                self.tell(run, n_most);
-            }
-            advanced?;
+/// Runs until the stop rule is met.
+fn drive(
+    run: &mut Run<'_>,
+    progress: &mut Looks<'_>,
+    watch: &mut dyn FnMut(&Running<'_>),
+    task: &Task,
+) -> Result<(), PipelineError> {
+    // What a resumed run has seen before counts as in one that was never interrupted.
+    let n_before = run.record().total.len();
+    for n in (STRIDE..=n_before).step_by(STRIDE) {
+        progress.look(&run.record().until(n));
+    }
+    let phase = task.phase("running the field", progress.n_most);
+    phase.advance(n_before);
+    let mut told: Option<Instant> = None;
+    loop {
+        let n_done = run.record().total.len();
+        let is_over = progress.is_met() || n_done >= progress.n_most;
+        let advanced = if is_over { Ok(()) } else { run.advance(STRIDE - n_done % STRIDE, task) };
+        let goes_on = !is_over && advanced.is_ok();
+        if !goes_on || told.is_none_or(|last| last.elapsed() >= WATCH) {
+            told = Some(Instant::now());
+            watch(&progress.running(run, goes_on));
         }
-        Ok(())
-    }
-
-    fn tell(&mut self, run: &Run<'_>, n_most: usize) {
-        self.told = Some(Instant::now());
-        let record = run.record();
-        let seconds = |n_steps: f64| n_steps * self.n_tets as f64 / run.speed().max(1.0);
-        let n_most_left = n_most.saturating_sub(record.total.len()) as f64;
-        let n_left = self.steps_left().unwrap_or(n_most_left).clamp(0.0, n_most_left);
-        (self.watch)(&Running {
-            record,
-            line: self.line,
-            band: self.settings.band,
-            n_tets: self.n_tets,
-            n_most,
-            decay_db: self.looks.last().map(|&(_, db)| db),
-            speed: run.speed(),
-            seconds_left: seconds(n_left),
-            seconds_most: seconds(n_most_left),
-        });
-    }
-
-    /// Steps until the stop rule is met, by the decay over the later half of the looks; `None` while it does not fall.
-    fn steps_left(&self) -> Option<f64> {
-        let &(n_done, db) = self.looks.last()?;
-        let &(n_before, db_before) = self.looks.get(self.looks.len() / 2)?;
-        let per_step = (db_before - db) / n_done.saturating_sub(n_before).max(1) as f64;
-        (per_step > 0.0).then(|| (db + self.settings.decay_db) / per_step)
+        advanced?;
+        if is_over {
+            return Ok(());
+        }
+        phase.advance(run.record().total.len() - n_done);
+        progress.look(run.record());
     }
 }

@@ -57,15 +57,19 @@ pub fn frequencies(lo: f64, hi: f64, step: f64) -> Vec<f64> {
 pub fn sweep(record: &Record, line: &FeedLine, freqs: &[f64]) -> Sweep {
     let reflected: Vec<f64> = record.reflected().collect();
     let s11 = freqs.par_iter().map(|&f| {
-        let at_port = transform(&reflected, f * record.dt) / transform(&record.incident, f * record.dt);
-        let turn = 2.0 * TAU * f * line.eps_r.sqrt() / C0 * line.length;
-        renormalise(at_port * Complex::from_polar(1.0, turn), line.impedance, line.reference)
+        reflection(transform(&reflected, f * record.dt) / transform(&record.incident, f * record.dt), line, f)
     });
     Sweep { freqs: freqs.to_vec(), s11: s11.collect(), reference: line.reference }
 }
 
+/// S11 at the line's other end, for the reference impedance, from the reflection at the port.
+pub(super) fn reflection(at_port: Complex<f64>, line: &FeedLine, f: f64) -> Complex<f64> {
+    let turn = 2.0 * TAU * f * line.eps_r.sqrt() / C0 * line.length;
+    renormalise(at_port * Complex::from_polar(1.0, turn), line.impedance, line.reference)
+}
+
 /// `sum x_n exp(-j 2 pi cycles n)`
-fn transform(series: &[f64], cycles: f64) -> Complex<f64> {
+pub(super) fn transform(series: &[f64], cycles: f64) -> Complex<f64> {
     series.iter().enumerate().map(|(n, &x)| Complex::from_polar(x, -TAU * (cycles * n as f64).fract())).sum()
 }
 

@@ -22,6 +22,11 @@ pub enum TlmError {
         /// Upper end, Hz.
         hi: f64,
     },
+    /// The checkpoint was taken of another run.
+    #[error(
+        "the checkpoint belongs to another run: antenna, mesh density, band and version of the program must be the same; solve without it"
+    )]
+    ForeignCheckpoint,
     /// The work was called off.
     #[error(transparent)]
     Cancelled(#[from] crate::task::Cancelled),

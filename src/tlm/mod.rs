@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! TetMesh --Network::new--> Network (coefficients, fixed) --Run (state, steps)--> port series
+//!                                                          '--> Checkpoint, from which it goes on with the same bits
 //! ```
 //!
 //! Each cell is a node with a port per edge; a port's voltage is the line integral of the electric field along the
@@ -15,13 +16,18 @@
 
 mod blocks;
 mod cell;
+mod checkpoint;
 mod error;
 mod network;
 mod port;
 mod run;
 mod source;
 
+pub use checkpoint::Checkpoint;
 pub use error::TlmError;
 pub use network::{Network, NetworkSettings, StepLimit};
 pub use run::{Record, Run};
 pub use source::Pulse;
+
+/// Goes up when the same mesh and settings give another result, so that results kept from before are known as such.
+pub const SOLVER_VERSION: u32 = 1;

@@ -30,6 +30,12 @@ impl Record {
         self.total.iter().zip(&self.incident).map(|(total, incident)| total - incident)
     }
 
+    /// Its first steps.
+    #[must_use]
+    pub fn until(&self, n_steps: usize) -> Self {
+        Self { dt: self.dt, incident: self.incident[..n_steps].to_vec(), total: self.total[..n_steps].to_vec() }
+    }
+
     /// How far the reflected voltage has fallen: greatest magnitude over the last `window` seconds relative to the
     /// greatest of all.
     #[must_use]
@@ -46,14 +52,14 @@ impl Record {
 /// A run of the field in a network.
 #[derive(Clone, Debug)]
 pub struct Run<'a> {
-    network: &'a Network,
-    pulse: Pulse,
-    states: Vec<State>,
-    reflected: Vec<Reflected>,
+    pub(super) network: &'a Network,
+    pub(super) pulse: Pulse,
+    pub(super) states: Vec<State>,
+    pub(super) reflected: Vec<Reflected>,
     /// Edge voltages; one more than there are edges, always zero.
-    voltages: Vec<f32>,
-    record: Record,
-    seconds: f64,
+    pub(super) voltages: Vec<f32>,
+    pub(super) record: Record,
+    pub(super) seconds: f64,
 }
 
 impl<'a> Run<'a> {
@@ -75,6 +81,12 @@ impl<'a> Run<'a> {
     #[must_use]
     pub fn record(&self) -> &Record {
         &self.record
+    }
+
+    /// Number of cells.
+    #[must_use]
+    pub fn n_tets(&self) -> usize {
+        self.network.n_tets
     }
 
     /// Cells times steps per second so far.

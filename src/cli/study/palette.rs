@@ -7,4 +7,4 @@ pub(super) const ORDERED: [[u8; 3]; 6] =
 pub(in crate::cli) const DISTINCT: [[u8; 3]; 5] =
     [[0, 114, 178], [213, 94, 0], [0, 158, 115], [204, 121, 167], [86, 86, 86]];
 /// References.
-pub(super) const REFERENCE: [u8; 3] = [33, 37, 41];
+pub(in crate::cli) const REFERENCE: [u8; 3] = [33, 37, 41];

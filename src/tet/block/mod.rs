@@ -43,6 +43,7 @@ const GROUND_ID: usize = 6;
 
 /// What the patch and the ground are made of.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Metal {
     /// Sheets without thickness: marked faces of the substrate.
     #[default]

@@ -1,0 +1,124 @@
+//! Runs of the solver as the command line does them: with checkpoints, and results kept beside the project.
+
+use super::args::StopChoice;
+use crate::io::{IoError, checkpoint};
+use crate::pipeline::{
+    self, Job, MeshSettings, PipelineError, Running, Shape, SolveSettings, Solved, StopRule, Stored,
+};
+use crate::project::Project;
+use crate::task::Task;
+use crate::tet::Metal;
+use crate::units::{C0, GHZ};
+use anyhow::{Context, Result};
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// Checkpoints are this far apart: what a power cut costs at most.
+const EVERY: Duration = Duration::from_secs(60);
+/// Relative tolerance of the settled rule. Ten times as much already cuts coarse runs off before weak modes show;
+/// a tenth waits longer than the decay by 40 dB does.
+const TOLERANCE: f64 = 5e-4;
+
+/// Whether a run goes on from a checkpoint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Resume {
+    Never,
+    /// If there is one that fits.
+    IfThere,
+    /// There must be one.
+    Must,
+}
+
+/// Settings from what was typed; the band is in GHz.
+pub(super) fn settings(
+    project: &Project,
+    density: pipeline::Density,
+    band_ghz: Option<&[f64]>,
+    stop: StopChoice,
+) -> SolveSettings {
+    let mut settings = SolveSettings::new(MeshSettings { density, metal: Metal::Sheet }, band(band_ghz, project));
+    if stop == StopChoice::Settled {
+        settings.stop = StopRule::Settled { tolerance: TOLERANCE };
+    }
+    settings
+}
+
+/// The band in Hz: as given, or around the resonance of an ideal cavity under the patch.
+fn band(given_ghz: Option<&[f64]>, project: &Project) -> [f64; 2] {
+    if let Some(&[lo, hi]) = given_ghz {
+        return [lo * GHZ, hi * GHZ];
+    }
+    let params = project.antenna.to_params();
+    let cavity = C0 / (2.0 * params.length * params.substrate.eps_r.sqrt());
+    [cavity * 2.0 / 3.0, cavity * 4.0 / 3.0]
+}
+
+/// Solves a shape and keeps the result in a folder; a run that is called off leaves its checkpoint there.
+pub(super) fn solve(
+    project: &Project,
+    shape: Shape,
+    settings: &SolveSettings,
+    dir: &Path,
+    resume: Resume,
+    task: &Task,
+) -> Result<(Solved, Stored)> {
+    let job = Job::new(project, shape, settings);
+    let path = job.checkpoint_path(dir);
+    let before = match resume {
+        Resume::Must if !path.exists() => anyhow::bail!(
+            "there is no checkpoint of this run in {}: it was finished, never interrupted, or differs; solve without --resume",
+            dir.display()
+        ),
+        Resume::Must => Some(checkpoint::read(&path)?),
+        // One that is damaged is as good as none.
+        Resume::IfThere => path.exists().then(|| checkpoint::read(&path).ok()).flatten(),
+        Resume::Never => None,
+    };
+    let mut keeper = Keeper { path: &path, written: Instant::now(), task, result: Ok(false) };
+    let mut run = |from| pipeline::solve(project, shape, settings, from, &mut |running| keeper.watch(running), task);
+    let solved = match (run(before.as_ref()), resume) {
+        (Err(PipelineError::Solver(_)), Resume::IfThere) if before.is_some() => run(None),
+        (solved, _) => solved,
+    };
+    let is_kept = keeper.result?;
+    let solved = match solved {
+        Err(PipelineError::Cancelled(cancelled)) if is_kept => {
+            let how = if resume == Resume::IfThere { "the same command goes on" } else { "add --resume to go on" };
+            eprintln!("kept {}: {how}", path.display());
+            return Err(cancelled.into());
+        }
+        solved => solved?,
+    };
+    let stored = Stored::new(job, &solved);
+    stored.save(dir)?;
+    if path.exists() {
+        std::fs::remove_file(&path).with_context(|| format!("removing {}", path.display()))?;
+    }
+    Ok((solved, stored))
+}
+
+/// Writes checkpoints while a run goes on.
+struct Keeper<'a> {
+    path: &'a Path,
+    written: Instant,
+    task: &'a Task,
+    /// Whether the last state was kept, or why one could not be.
+    result: Result<bool, IoError>,
+}
+
+impl Keeper<'_> {
+    fn watch(&mut self, running: &Running<'_>) {
+        let is_called_off = !running.goes_on && self.task.is_cancelled();
+        if self.result.is_err() || !(is_called_off || running.goes_on && self.written.elapsed() >= EVERY) {
+            return;
+        }
+        if let Some(folder) = self.path.parent()
+            && let Err(source) = std::fs::create_dir_all(folder)
+        {
+            self.result = Err(IoError::System { action: "create", path: folder.to_owned(), source });
+            return;
+        }
+        self.result = checkpoint::write(&running.checkpoint(), self.path).map(|()| is_called_off);
+        self.written = Instant::now();
+    }
+}

@@ -1,0 +1,286 @@
+//! Results kept beside their project, found again by a hash of what they were computed from.
+//!
+//! One versioned JSON file per run, named by the run's key. The key covers what the result depends on and nothing
+//! else: antenna, what poses and compensates the shape in question, mesh, band and stop rule, and the version of the
+//! solver. Presets that are switched off, and settings that the shape or the compensation does not use, leave it as it
+//! is; so the flat antenna's result serves every bend of it.
+
+use super::mesh::Shape;
+use super::solve::{SolveSettings, Solved};
+use crate::io::{IoError, document};
+use crate::project::{CageSpec, CompensationMode, PresetSpec, Project, RuleSpec, Settings};
+use crate::results::{FittedResonance, Sweep};
+use crate::tlm::SOLVER_VERSION;
+use nalgebra::Complex;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use std::path::{Path, PathBuf};
+
+/// The tag of a result's file.
+const FORMAT: &str = "conformant-result";
+/// The newest version that is read, and the one that is written.
+const VERSION: u32 = 1;
+
+/// What is solved: a project's shape and how.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Job {
+    /// The project, with what does not matter to this shape at its default.
+    project: Project,
+    shape: Shape,
+    settings: SolveSettings,
+    solver_version: u32,
+}
+
+impl Job {
+    /// The job of solving a project's shape with this program.
+    #[must_use]
+    pub fn new(project: &Project, shape: Shape, settings: &SolveSettings) -> Self {
+        Self { project: relevant(project, shape), shape, settings: *settings, solver_version: SOLVER_VERSION }
+    }
+
+    /// SHA-256 of the job, hexadecimal.
+    #[must_use]
+    pub fn key(&self) -> String {
+        let text = serde_json::to_vec(self).expect("plain values with text keys have a JSON form");
+        Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+
+    /// Where its result is kept.
+    #[must_use]
+    pub fn result_path(&self, dir: &Path) -> PathBuf {
+        dir.join(format!("{:.16}.json", self.key()))
+    }
+
+    /// Where its run is kept while it is interrupted.
+    #[must_use]
+    pub fn checkpoint_path(&self, dir: &Path) -> PathBuf {
+        dir.join(format!("{:.16}.checkpoint", self.key()))
+    }
+}
+
+/// The project with all at its default that a shape does not depend on.
+fn relevant(project: &Project, shape: Shape) -> Project {
+    let mut project = project.clone();
+    project.presets.retain(|entry| entry.enabled);
+    let defaults = Settings::default();
+    match shape {
+        Shape::Flat => project = Project { antenna: project.antenna, ..Project::default() },
+        Shape::Cylinder => {
+            project.cage = CageSpec::default();
+            project.settings = Settings { tolerance_mm: project.settings.tolerance_mm, ..defaults };
+            for entry in &mut project.presets {
+                if let PresetSpec::Bend { rule, .. } = &mut entry.preset {
+                    *rule = RuleSpec::Tangent;
+                }
+            }
+        }
+        Shape::Deformed => {
+            if project.settings.compensation != CompensationMode::Wl {
+                project.settings.scope = defaults.scope;
+                project.settings.fit_orders = defaults.fit_orders;
+            }
+        }
+    }
+    project
+}
+
+/// The folder in which a project's results are kept: `antenna.json` has `antenna.results`.
+#[must_use]
+pub fn results_dir(project_file: &Path) -> PathBuf {
+    project_file.with_extension("results")
+}
+
+/// A result with what it was computed from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Stored {
+    job: Job,
+    freqs_hz: Vec<f64>,
+    s11_re: Vec<f64>,
+    s11_im: Vec<f64>,
+    reference_ohm: f64,
+    /// The strongest resonance by fit.
+    pub fitted: Option<FittedResonance>,
+    /// Figures of the run.
+    pub figures: RunFigures,
+}
+
+/// Figures of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RunFigures {
+    /// The port's impedance as meshed, ohm.
+    pub port_impedance_ohm: f64,
+    /// Number of cells.
+    pub tets: usize,
+    /// Cells whose stubs were clipped.
+    pub clipped_cells: usize,
+    /// Time step, s.
+    pub dt_s: f64,
+    /// Steps done.
+    pub steps: usize,
+    /// How far the reflected voltage had fallen, dB.
+    pub residual_db: f64,
+    /// Whether the stop rule was met.
+    pub is_settled: bool,
+    /// Cells times steps per second.
+    pub tet_steps_per_second: f64,
+    /// Time that meshing and solving took, s.
+    pub seconds: f64,
+}
+
+impl Stored {
+    /// A result to be kept.
+    #[must_use]
+    pub fn new(job: Job, solved: &Solved) -> Self {
+        let Sweep { freqs, s11, reference } = &solved.sweep;
+        Self {
+            job,
+            freqs_hz: freqs.clone(),
+            s11_re: s11.iter().map(|s| s.re).collect(),
+            s11_im: s11.iter().map(|s| s.im).collect(),
+            reference_ohm: *reference,
+            fitted: solved.fitted,
+            figures: RunFigures {
+                port_impedance_ohm: solved.port_impedance,
+                tets: solved.meshed.mesh.tets.len(),
+                clipped_cells: solved.n_clipped,
+                dt_s: solved.record.dt,
+                steps: solved.record.total.len(),
+                residual_db: solved.residual_db,
+                is_settled: solved.is_settled,
+                tet_steps_per_second: solved.speed,
+                seconds: solved.seconds,
+            },
+        }
+    }
+
+    /// What it was computed from.
+    #[must_use]
+    pub fn job(&self) -> &Job {
+        &self.job
+    }
+
+    /// S11 over frequency.
+    #[must_use]
+    pub fn sweep(&self) -> Sweep {
+        let s11 = self.s11_re.iter().zip(&self.s11_im).map(|(&re, &im)| Complex::new(re, im)).collect();
+        Sweep { freqs: self.freqs_hz.clone(), s11, reference: self.reference_ohm }
+    }
+
+    /// Keeps the result in a folder, which is made where it is missing; returns its file.
+    ///
+    /// # Errors
+    /// [`IoError`].
+    pub fn save(&self, dir: &Path) -> Result<PathBuf, IoError> {
+        let path = self.job.result_path(dir);
+        document::write(&path, FORMAT, VERSION, self)?;
+        Ok(path)
+    }
+
+    /// The result of a job, if a folder holds it.
+    ///
+    /// # Errors
+    /// [`IoError`] if its file is there but cannot be read.
+    pub fn find(job: &Job, dir: &Path) -> Result<Option<Self>, IoError> {
+        let path = job.result_path(dir);
+        if !path.exists() {
+            return Ok(None);
+        }
+        let stored: Self = document::read(&path, FORMAT, VERSION)?;
+        // A file that was renamed, or series cut by hand, is no result of this job.
+        let n = stored.freqs_hz.len();
+        let is_whole = stored.s11_re.len() == n && stored.s11_im.len() == n;
+        Ok(Some(stored).filter(|stored| stored.job == *job && is_whole))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pipeline::{Density, MeshSettings, StopRule};
+    use crate::project::{BendPlane, PresetEntry};
+
+    fn bent() -> Project {
+        let preset =
+            PresetSpec::Bend { plane: BendPlane::E, radius_mm: 10.0, rule: RuleSpec::Tangent, kept_plane_mm: 0.0 };
+        Project { presets: vec![PresetEntry { enabled: true, preset }], ..Project::default() }
+    }
+
+    fn settings() -> SolveSettings {
+        SolveSettings::new(MeshSettings { density: Density::Coarse, ..MeshSettings::default() }, [7e9, 14e9])
+    }
+
+    fn key(shape: Shape, change: impl Fn(&mut Project)) -> String {
+        let mut project = bent();
+        change(&mut project);
+        Job::new(&project, shape, &settings()).key()
+    }
+
+    #[test]
+    fn the_key_follows_what_the_result_depends_on() {
+        type Change = fn(&mut Project);
+        let changes: [(Change, [bool; 3]); 7] = [
+            (|p| p.antenna.width_mm += 0.01, [true, true, true]),
+            (|p| p.presets[0].enabled = false, [true, false, true]),
+            (|p| p.cage.padding_mm[2] += 1.0, [true, false, false]),
+            (|p| p.settings.compensation = CompensationMode::None, [true, false, false]),
+            (|p| p.settings.tolerance_mm = 0.02, [true, false, true]),
+            (|p| p.settings.fit_orders = [3, 3], [false, false, false]),
+            (|p| p.presets.push(PresetEntry { enabled: false, ..p.presets[0] }), [false, false, false]),
+        ];
+        for (n, (change, expected)) in changes.into_iter().enumerate() {
+            for (shape, expected) in [Shape::Deformed, Shape::Flat, Shape::Cylinder].into_iter().zip(expected) {
+                assert_eq!(key(shape, change) != key(shape, |_| ()), expected, "change {n}, {shape:?}");
+            }
+        }
+        let wl = |orders| {
+            move |p: &mut Project| {
+                p.settings.compensation = CompensationMode::Wl;
+                p.settings.fit_orders = orders;
+            }
+        };
+        assert_ne!(key(Shape::Deformed, wl([3, 3])), key(Shape::Deformed, wl([5, 5])), "WL depends on its orders");
+        let other = SolveSettings { stop: StopRule::Settled { tolerance: 1e-3 }, ..settings() };
+        assert_ne!(Job::new(&bent(), Shape::Flat, &other).key(), key(Shape::Flat, |_| ()), "another stop rule");
+    }
+
+    fn stored(job: Job) -> Stored {
+        Stored {
+            job,
+            freqs_hz: vec![7e9, 7.1e9],
+            s11_re: vec![0.1, -1.0 / 3.0],
+            s11_im: vec![0.0, 1e-17],
+            reference_ohm: 50.0,
+            fitted: Some(FittedResonance { freq: 1.1e10, freq_error: 1e6, q: 4.8, q_error: 0.1 }),
+            figures: RunFigures {
+                port_impedance_ohm: 49.4,
+                tets: 50_000,
+                clipped_cells: 150,
+                dt_s: 1.4e-13,
+                steps: 9000,
+                residual_db: -40.1,
+                is_settled: true,
+                tet_steps_per_second: 5e7,
+                seconds: 9.5,
+            },
+        }
+    }
+
+    #[test]
+    fn a_result_is_found_by_its_job_alone() {
+        let folder = tempfile::tempdir().unwrap();
+        let job = Job::new(&bent(), Shape::Cylinder, &settings());
+        assert_eq!(Stored::find(&job, folder.path()).unwrap(), None, "nothing yet");
+        let path = stored(job.clone()).save(folder.path()).unwrap();
+        assert_eq!(Stored::find(&job, folder.path()).unwrap(), Some(stored(job.clone())), "as kept");
+        let other = Job::new(&bent(), Shape::Flat, &settings());
+        std::fs::rename(&path, other.result_path(folder.path())).unwrap();
+        assert_eq!(Stored::find(&other, folder.path()).unwrap(), None, "renamed by hand");
+        std::fs::write(&path, r#"{"format": "conformant-result", "version": 1, "content": {"a": 1}}"#).unwrap();
+        let message = Stored::find(&job, folder.path()).unwrap_err().to_string();
+        assert!(message.contains("unknown field `a`"), "{message}");
+        assert_eq!(results_dir(Path::new("x/antenna.json")), Path::new("x/antenna.results"), "beside the project");
+    }
+}
