@@ -143,7 +143,7 @@ impl App {
                     panel_mesh::ui(ui, self.session.project(), &self.mesh, facts, &mut self.state, out);
                 }
                 RightTab::Solve => {
-                    panel_solve::ui(ui, self.session.project(), &self.solve, facts, &mut self.state, out);
+                    panel_solve::ui(ui, self.session.project(), &mut self.solve, facts, &mut self.state, out);
                 }
             });
         });
@@ -168,6 +168,7 @@ impl App {
             Action::StopWork => self.session.stop_work(),
             Action::CancelMesh => self.mesh.cancel(),
             Action::CancelSolve => self.solve.cancel(),
+            Action::ResumeSolve => self.solve.resume(),
             Action::ShowRun(serial, shows) => {
                 if let Some(run) = self.solve.run_mut(serial) {
                     run.is_shown = shows;

@@ -27,6 +27,8 @@ pub(super) enum Action {
     CancelMesh,
     /// Calls the solver off.
     CancelSolve,
+    /// Goes on with the run that was called off.
+    ResumeSolve,
     /// Shows or hides the curves of a run, by its number.
     ShowRun(u64, bool),
     /// Gives the curves of a run another colour of the theme.

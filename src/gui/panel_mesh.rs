@@ -80,7 +80,7 @@ pub(super) fn heading(ui: &mut Ui, text: &str) {
 }
 
 /// One of several values, each with its name and tooltip.
-fn choice<T: Copy + PartialEq>(
+pub(super) fn choice<T: Copy + PartialEq>(
     ui: &mut Ui,
     (name, tip): (&'static str, &'static str),
     value: &mut T,

@@ -4,10 +4,11 @@ use super::command::{Command, Facts};
 use super::field::{Number, rows, symbol_button};
 use super::mesh_session::grouped;
 use super::outbox::{Action, Outbox};
-use super::panel_mesh::{heading, shape_and_density};
+use super::panel_mesh::{choice, heading, shape_and_density};
 use super::solve_session::{SolveSession, usual_band_ghz};
 use super::theme::Tokens;
-use super::ui_state::{SolveUi, UiState};
+use super::ui_state::{SolveUi, Stop, UiState};
+use crate::pipeline::Estimate;
 use crate::project::Project;
 use egui::{ProgressBar, RichText, Spinner, Ui};
 
@@ -15,8 +16,8 @@ const LOWER: Number = Number::new("band from", "Band from", "GHz", 0.05)
     .tip("Lower end of the band; at first a third below the antenna's resonance");
 const UPPER: Number = Number::new("band to", "Band to", "GHz", 0.05)
     .tip("Upper end of the band; at first a third above the antenna's resonance");
-const DECAY: Number = Number::new("decay", "Stop at decay", "dB", 0.5)
-    .tip("The run stops when the reflected voltage has fallen by this; 40 dB leave ripples of 0.1 dB at most");
+const DECAY: Number = Number::new("decay", "Decay", "dB", 0.5)
+    .tip("How far the reflected voltage is to fall; less leaves ripples on the curve");
 const LONGEST: Number =
     Number::new("longest", "At most", "ns", 0.1).tip("It stops after this time in the antenna in any case");
 /// What the numbers may be: the solver's own limits are wider.
@@ -30,7 +31,7 @@ const NARROWEST: f64 = 0.02;
 pub(super) fn ui(
     ui: &mut Ui,
     project: &Project,
-    solve: &SolveSession,
+    solve: &mut SolveSession,
     facts: &Facts,
     state: &mut UiState,
     out: &mut Outbox,
@@ -40,10 +41,17 @@ pub(super) fn ui(
     if solve.is_busy() {
         busy(ui, solve, out);
     } else {
+        cost(ui, &solve.estimate(project, &state.solve));
         ui.horizontal(|ui| {
             for command in [Command::Solve, Command::ShowResults] {
                 if command.tool_button(ui, facts) {
                     out.push(Action::Run(command));
+                }
+            }
+            if let Some(name) = solve.interrupted() {
+                let tip = format!("Go on with the run that was called off: {name}");
+                if ui.button("Resume").on_hover_text(tip).clicked() {
+                    out.push(Action::ResumeSolve);
                 }
             }
         });
@@ -98,9 +106,11 @@ fn choices(ui: &mut Ui, project: &Project, chosen: &mut SolveUi) {
                 chosen.band_ghz = Some(band);
             }
         }
-        for (number, value, [lo, hi]) in
-            [(DECAY, &mut chosen.decay_db, DECAY_DB), (LONGEST, &mut chosen.longest_ns, LONGEST_NS)]
-        {
+        let stops = [Stop::Decayed, Stop::Settled];
+        choice(ui, ("Stop", "When the run ends"), &mut chosen.stop, &stops, stop_text, |_| Ok(()));
+        let decay = (chosen.stop == Stop::Decayed).then_some((DECAY, &mut chosen.decay_db, DECAY_DB));
+        let longest = (LONGEST, &mut chosen.longest_ns, LONGEST_NS);
+        for (number, value, [lo, hi]) in decay.into_iter().chain([longest]) {
             let (_, new) = number.show(ui, *value);
             ui.end_row();
             if let Some(new) = new {
@@ -108,6 +118,33 @@ fn choices(ui: &mut Ui, project: &Project, chosen: &mut SolveUi) {
             }
         }
     });
+}
+
+/// Name and tooltip of a stop rule.
+fn stop_text(stop: Stop) -> (&'static str, &'static str) {
+    match stop {
+        Stop::Decayed => ("When decayed", "The reflected voltage has fallen far enough: S11 is that of the run itself"),
+        Stop::Settled => {
+            ("When settled", "The resonance stays where it is: S11 is continued by the fitted modes; often sooner")
+        }
+    }
+}
+
+/// What the run would take.
+fn cost(ui: &mut Ui, estimate: &Result<Estimate, String>) {
+    let tokens = Tokens::here(ui);
+    let text = match estimate {
+        Ok(e) => {
+            let round = |n: usize| grouped((n as f64 / 100.0).round() as usize * 100);
+            let (cells, steps) = (round(e.n_tets), round(e.n_steps));
+            let megabytes = (e.bytes as f64 / 1e6).ceil();
+            let text = format!("About {cells} cells, {steps} steps,\n{megabytes:.0} MB and {}", time(e.seconds));
+            RichText::new(text).color(tokens.weak)
+        }
+        Err(error) => RichText::new(format!("This cannot be solved: {error}")).color(tokens.warning),
+    };
+    let tip = "Estimated before meshing: cells within a fifth, time within a half";
+    ui.add(egui::Label::new(text).wrap()).on_hover_text(tip);
 }
 
 fn busy(ui: &mut Ui, solve: &SolveSession, out: &mut Outbox) {

@@ -28,6 +28,12 @@ struct Line<T> {
 
 const REFLECTION: &[Line<RunResult>] = &[
     Line { name: "Resonance", tip: "Frequency of the smallest |S11|", text: |r| Some(gigahertz(r.resonance?.freq)) },
+    Line {
+        name: "  by fit",
+        tip: "Frequency of the strongest damped oscillation in the late record",
+        text: |r| Some(gigahertz(r.fitted?.freq)),
+    },
+    Line { name: "Q by fit", tip: "Quality, loaded by the line", text: |r| Some(format!("{:.1}", r.fitted?.q)) },
     Line { name: "|S11| there", tip: "The smallest |S11|", text: |r| Some(format!("{:.2} dB", r.resonance?.depth_db)) },
     Line { name: "Impedance there", tip: "At the ground's top", text: |r| Some(ohms(resonant_impedance(r)?)) },
     Line {
@@ -51,6 +57,11 @@ const REFLECTION: &[Line<RunResult>] = &[
         name: "Decay",
         tip: "How far the reflected voltage had fallen",
         text: |r| Some(format!("{:.1} dB", r.residual_db)),
+    },
+    Line {
+        name: "Stopped by",
+        tip: "The stop rule chosen, or the longest time",
+        text: |r| Some(if r.is_settled { "its rule" } else { "the time limit" }.to_owned()),
     },
     Line { name: "Cells", tip: "Tetrahedra", text: |r| Some(grouped(r.n_tets)) },
     Line {

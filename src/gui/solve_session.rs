@@ -5,15 +5,20 @@
 
 use super::mesh_session::{density_text, grouped};
 use super::theme::N_SERIES;
-use super::ui_state::SolveUi;
+use super::ui_state::{SolveUi, Stop};
 use crate::pipeline::solve_job::{LiveRun, RunResult, SolveJob, SolveRequest};
-use crate::pipeline::{Density, MeshSettings, Shape, SolveSettings};
+use crate::pipeline::{Density, Estimate, MeshSettings, Shape, SolveSettings, StopRule, estimate};
 use crate::project::{BendPlane, CompensationMode, PresetSpec, Project};
 use crate::task::Progress;
 use crate::tet::Metal;
 use crate::units::{C0, GHZ};
 use std::collections::BTreeSet;
 use std::time::Instant;
+
+/// Relative tolerance of a settled resonance: ten times as much cuts coarse runs off before weak modes show.
+const TOLERANCE: f64 = 5e-4;
+/// Cells times steps per second before any run has said how fast this machine is.
+const USUAL_SPEED: f64 = 4e7;
 
 /// A finished run, a number that tells it from others, and how it is shown.
 #[derive(Clone, Debug)]
@@ -55,6 +60,10 @@ pub(super) struct SolveSession {
     job: SolveJob,
     runs: Vec<FinishedRun>,
     live: Option<LiveRun>,
+    /// The last request, while it is under way and after it was called off.
+    asked: Option<SolveRequest>,
+    /// What the last estimate was for, and the estimate.
+    estimate: Option<(SolveRequest, Result<Estimate, String>)>,
     started: Option<Instant>,
     error: Option<String>,
     serial: u64,
@@ -63,7 +72,7 @@ pub(super) struct SolveSession {
 impl SolveSession {
     /// Starts with no run.
     pub(super) fn new(job: SolveJob) -> Self {
-        Self { job, runs: Vec::new(), live: None, started: None, error: None, serial: 0 }
+        Self { job, runs: Vec::new(), live: None, asked: None, estimate: None, started: None, error: None, serial: 0 }
     }
 
     /// The finished runs, oldest first.
@@ -103,22 +112,55 @@ impl SolveSession {
 
     /// Begins to solve a project as chosen.
     pub(super) fn start(&mut self, project: &Project, chosen: &SolveUi) {
+        self.ask(request(project, chosen));
+    }
+
+    /// Goes on with the run that was called off.
+    pub(super) fn resume(&mut self) {
+        if let Some(request) = self.asked.take() {
+            self.ask(request);
+        }
+    }
+
+    /// The run that was called off and can go on.
+    pub(super) fn interrupted(&self) -> Option<String> {
+        self.asked.as_ref().filter(|_| !self.is_busy()).map(name)
+    }
+
+    fn ask(&mut self, request: SolveRequest) {
         (self.error, self.live) = (None, None);
         self.started = Some(Instant::now());
-        self.job.request(request(project, chosen));
+        self.asked = Some(request.clone());
+        self.job.request(request);
+    }
+
+    /// What a run of a project as chosen would take, or why it cannot be.
+    pub(super) fn estimate(&mut self, project: &Project, chosen: &SolveUi) -> Result<Estimate, String> {
+        let request = request(project, chosen);
+        if let Some((_, estimate)) = self.estimate.as_ref().filter(|(of, _)| of.is_same(&request)) {
+            return estimate.clone();
+        }
+        let speed = self.runs.last().map_or(USUAL_SPEED, |run| run.result.speed);
+        let found = estimate(project, request.shape, &request.settings, speed).map_err(|e| e.to_string());
+        self.estimate = Some((request, found.clone()));
+        found
     }
 
     /// Calls the run off; what is on show stays.
+    ///
+    /// It can go on later if the field ran already.
     pub(super) fn cancel(&mut self) {
         self.job.cancel();
-        self.live = None;
+        if self.live.take().is_none() {
+            self.asked = None;
+        }
     }
 
     /// Forgets everything: another project was opened.
     pub(super) fn clear(&mut self) {
         self.cancel();
         self.runs.clear();
-        self.error = None;
+        (self.asked, self.estimate, self.error) = (None, None, None);
     }
 
     /// The finished run of a number, to change how it is shown.
@@ -140,7 +182,7 @@ impl SolveSession {
     /// Adds a finished run; one of the very same request takes the place of the older.
     pub(super) fn add(&mut self, request: SolveRequest, result: RunResult) {
         self.serial += 1;
-        if let Some(same) = self.runs.iter_mut().find(|run| run.request == request) {
+        if let Some(same) = self.runs.iter_mut().find(|run| run.request.is_same(&request)) {
             (same.serial, same.result, same.is_shown) = (self.serial, result, true);
             return;
         }
@@ -157,7 +199,7 @@ impl SolveSession {
             self.live = Some(live);
         }
         let reply = self.job.poll()?;
-        self.live = None;
+        (self.live, self.asked, self.estimate) = (None, None, None);
         match reply.result {
             Ok(result) => {
                 let cells = grouped(result.n_tets);
@@ -182,12 +224,12 @@ impl SolveSession {
 pub(super) fn request(project: &Project, chosen: &SolveUi) -> SolveRequest {
     let mesh = MeshSettings { density: chosen.density, metal: Metal::Sheet };
     let band = chosen.band_ghz.unwrap_or_else(|| usual_band_ghz(project)).map(|f| f * GHZ);
-    let stop = SolveSettings {
-        decay_db: chosen.decay_db,
-        longest: chosen.longest_ns * 1e-9,
-        ..SolveSettings::new(mesh, band)
+    let stop = match chosen.stop {
+        Stop::Decayed => StopRule::Decay { db: chosen.decay_db },
+        Stop::Settled => StopRule::Settled { tolerance: TOLERANCE },
     };
-    SolveRequest { project: project.clone(), shape: chosen.shape, settings: stop }
+    let settings = SolveSettings { stop, longest: chosen.longest_ns * 1e-9, ..SolveSettings::new(mesh, band) };
+    SolveRequest::new(project.clone(), chosen.shape, settings)
 }
 
 /// A third below to a third above the resonance of an ideal cavity under the patch, GHz, to a hundredth.

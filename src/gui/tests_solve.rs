@@ -11,7 +11,7 @@ use super::ui_state::{Curve, Polarization, ResultTab, RightTab, SolveUi};
 use crate::pipeline::solve_job::RunResult;
 use crate::pipeline::{Density, Shape};
 use crate::project::Edit;
-use crate::results::{FarField, Powers, Sweep, frequencies};
+use crate::results::{FarField, FittedResonance, Powers, Sweep, frequencies};
 use crate::units::{ETA0, GHZ};
 use egui::{Key, Theme};
 use egui_kittest::kittest::Queryable;
@@ -29,6 +29,8 @@ fn made_up(freq: f64) -> RunResult {
     let sweep = Sweep { s11: s11.collect(), freqs, reference: 50.0 };
     RunResult {
         resonance: sweep.resonance(),
+        fitted: Some(FittedResonance { freq: 1.001 * freq, freq_error: 1e6, q: 12.3, q_error: 0.1 }),
+        is_settled: true,
         sweep,
         port_impedance: 49.87,
         n_tets: 12_345,
@@ -107,6 +109,7 @@ fn the_launcher_solves_shows_the_curve_as_it_comes_and_keeps_old_results_when_ca
     window.state_mut().state.right_tab = RightTab::Solve;
     window.run_steps(2);
     window.get_by_label_contains("There are no results yet");
+    window.get_by_label_contains(" cells, ");
     let chosen = &mut window.state_mut().state.solve;
     (chosen.shape, chosen.density, chosen.longest_ns) = (Shape::Flat, Density::Coarse, 1.0);
     window.key_press(Key::F5);
@@ -132,6 +135,11 @@ fn the_launcher_solves_shows_the_curve_as_it_comes_and_keeps_old_results_when_ca
     let solve = &window.state().solve;
     assert!(!solve.is_busy() && solve.live().is_none() && solve.error().is_none(), "idle");
     assert_eq!(solve.runs()[0].serial, runs[0].serial, "the earlier result is still there");
+    window.get_by_label("Resume").click();
+    until(&mut window, "it goes on", |app| app.solve.live().is_some_and(|live| live.n_done > 1000));
+    run(&mut window, Command::ShowResults);
+    window.get_by_label("Cancel").click();
+    window.run_steps(2);
     // A run that cannot be.
     window.state_mut().edit("hand edits", Edit::MoveVertices(vec![(3, [0.0, 0.0, 0.2])]));
     settle(&mut window);

@@ -137,6 +137,16 @@ pub(super) enum Curve {
     Phase,
 }
 
+/// When a run of the solver stops.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) enum Stop {
+    /// When the reflected voltage has fallen far enough.
+    #[default]
+    Decayed,
+    /// When the resonance stays where it is.
+    Settled,
+}
+
 /// Which results are shown below the view.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum ResultTab {
@@ -165,7 +175,8 @@ pub(super) struct SolveUi {
     pub(super) density: Density,
     /// Ends of the band where the user chose them; else it lies around the antenna's resonance.
     pub(super) band_ghz: Option<[f64; 2]>,
-    /// The run stops when the reflected voltage has fallen by this, dB (positive).
+    pub(super) stop: Stop,
+    /// How far the reflected voltage is to fall, dB (positive).
     pub(super) decay_db: f64,
     /// It stops after this time in the antenna at the latest.
     pub(super) longest_ns: f64,
@@ -190,6 +201,7 @@ impl Default for SolveUi {
             shape: Shape::default(),
             density: Density::default(),
             band_ghz: None,
+            stop: Stop::default(),
             decay_db: 40.0,
             longest_ns: 4.0,
             shows_results: false,

@@ -5,12 +5,14 @@
 use super::job::{Job, Work};
 use super::{PipelineError, Shape, SolveSettings, Solved, solve};
 use crate::project::Project;
-use crate::results::{Cut, CutPlane, FarField, Resonance, Sweep};
+use crate::results::{Cut, CutPlane, FarField, FittedResonance, Resonance, Sweep};
 use crate::task::Task;
+use crate::tlm::Checkpoint;
+use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
 /// What is to be solved.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct SolveRequest {
     /// The project that the result will belong to.
     pub project: Project,
@@ -18,6 +20,27 @@ pub struct SolveRequest {
     pub shape: Shape,
     /// How.
     pub settings: SolveSettings,
+    /// Where the run leaves its state when it is called off, and goes on from when it is asked for again.
+    pub kept: Arc<Mutex<Option<Checkpoint>>>,
+}
+
+impl SolveRequest {
+    /// A request for a run from the start.
+    #[must_use]
+    pub fn new(project: Project, shape: Shape, settings: SolveSettings) -> Self {
+        Self { project, shape, settings, kept: Arc::default() }
+    }
+
+    /// Whether another request asks for the same result.
+    #[must_use]
+    pub fn is_same(&self, other: &Self) -> bool {
+        (&self.project, self.shape, &self.settings) == (&other.project, other.shape, &other.settings)
+    }
+
+    fn state(&self) -> MutexGuard<'_, Option<Checkpoint>> {
+        // Whole or not there, also after a panic.
+        self.kept.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+    }
 }
 
 /// A run under way.
@@ -44,6 +67,10 @@ pub struct RunResult {
     pub sweep: Sweep,
     /// Resonance and band by the smallest |S11|.
     pub resonance: Option<Resonance>,
+    /// The strongest resonance by fit to the late record.
+    pub fitted: Option<FittedResonance>,
+    /// Whether the stop rule was met; else the run ended at its longest.
+    pub is_settled: bool,
     /// The port's impedance as meshed, ohm.
     pub port_impedance: f64,
     /// Number of cells.
@@ -66,6 +93,8 @@ impl From<Solved> for RunResult {
     fn from(solved: Solved) -> Self {
         Self {
             resonance: solved.sweep.resonance(),
+            fitted: solved.fitted,
+            is_settled: solved.is_settled,
             sweep: solved.sweep,
             port_impedance: solved.port_impedance,
             n_tets: solved.meshed.mesh.tets.len(),
@@ -112,7 +141,10 @@ impl Work for SolveRequest {
     fn work(&self, task: &Task, show: &dyn Fn(LiveRun)) -> Result<RunResult, PipelineError> {
         let mut shown: Option<Instant> = None;
         let mut watch = |running: &super::Running<'_>| {
-            if shown.is_some_and(|last| last.elapsed() < PAUSE) {
+            if !running.goes_on && task.is_cancelled() {
+                *self.state() = Some(running.checkpoint());
+            }
+            if !running.goes_on || shown.is_some_and(|last| last.elapsed() < PAUSE) {
                 return;
             }
             show(LiveRun {
@@ -125,7 +157,8 @@ impl Work for SolveRequest {
             });
             shown = Some(Instant::now());
         };
-        Ok(solve(&self.project, self.shape, &self.settings, &mut watch, task)?.into())
+        let before = self.state().take();
+        Ok(solve(&self.project, self.shape, &self.settings, before.as_ref(), &mut watch, task)?.into())
     }
 }
 
@@ -133,15 +166,15 @@ impl Work for SolveRequest {
 mod tests {
     use super::*;
     use crate::pipeline::job::answer;
-    use crate::pipeline::{Density, MeshSettings};
+    use crate::pipeline::{Density, MeshSettings, StopRule};
     use crate::units::GHZ;
 
     #[test]
     fn a_run_shows_its_curve_and_a_cancelled_one_is_not_answered() {
         let mesh = MeshSettings { density: Density::Coarse, ..MeshSettings::default() };
-        let settings =
-            SolveSettings { longest: 1e-6, decay_db: 200.0, ..SolveSettings::new(mesh, [8.0 * GHZ, 13.0 * GHZ]) };
-        let request = SolveRequest { project: Project::default(), shape: Shape::Flat, settings };
+        let usual = SolveSettings::new(mesh, [8.0 * GHZ, 13.0 * GHZ]);
+        let settings = SolveSettings { longest: 1e-6, stop: StopRule::Decay { db: 200.0 }, ..usual };
+        let request = SolveRequest::new(Project::default(), Shape::Flat, settings);
         let mut job = SolveJob::spawn(|| ());
         job.request(request.clone());
         let start = Instant::now();
@@ -156,7 +189,17 @@ mod tests {
         assert!(sweep.s11.iter().all(|s| s.norm().is_finite()), "numbers");
         job.cancel();
         assert!(!job.is_busy() && job.live().is_none(), "idle at once");
-        job.request(SolveRequest { shape: Shape::Cylinder, ..request });
+        job.request(SolveRequest { shape: Shape::Cylinder, ..request.clone() });
         assert_eq!(answer(&mut job).result.unwrap_err(), PipelineError::NoCylinder.into(), "the next one is answered");
+        let n_before = request.state().as_ref().map(|state| state.record.total.len()).expect("it left its state");
+        job.request(request.clone());
+        let n_after = loop {
+            assert!(start.elapsed() < Duration::from_secs(300), "it does not go on");
+            if let Some(live) = job.live() {
+                break live.n_done;
+            }
+            std::thread::sleep(Duration::from_millis(2));
+        };
+        assert!(n_after > n_before && request.state().is_none(), "{n_after} steps, called off after {n_before}");
     }
 }
