@@ -451,12 +451,14 @@ impl eframe::App for App {
         if self.state.shows_log {
             Panel::bottom("log").resizable(true).default_size(110.0).show(ui, |ui| self.messages.log(ui));
         }
+        let mut raised = 0.0;
         if self.state.solve.shows_results {
             let panel = Panel::bottom("results").resizable(true).default_size(panel_results::HEIGHT);
-            panel.size_range(panel_results::HEIGHTS).show(ui, |ui| {
+            let shown = panel.size_range(panel_results::HEIGHTS).show(ui, |ui| {
                 let (project, chosen) = (self.session.project(), &mut self.state.solve);
                 panel_results::ui(ui, project, &self.solve, &facts, chosen, &mut out);
             });
+            raised = shown.response.rect.height();
         }
         self.side_panels(ui, &facts, &mut out);
         let pose = self.session.pose().cloned();
@@ -468,7 +470,7 @@ impl eframe::App for App {
         });
         let name = self.session.name();
         self.dialog.ui(&ctx, &name, &mut self.state, &mut out);
-        self.messages.show_toasts(&ctx);
+        self.messages.show_toasts(&ctx, raised);
         for action in out.actions {
             self.carry_out(&ctx, action);
         }
@@ -477,9 +479,14 @@ impl eframe::App for App {
         for news in self.session.sync() {
             self.tell(news);
         }
-        if self.session.is_busy() || self.mesh.is_busy() || self.solve.is_busy() {
-            // For the progress.
-            ctx.request_repaint_after(std::time::Duration::from_millis(100));
+        // For the progress: rarely while the solver needs the processor.
+        let pause = match (self.session.is_busy() || self.mesh.is_busy(), self.solve.is_busy()) {
+            (true, _) => Some(100),
+            (false, true) => Some(500),
+            (false, false) => None,
+        };
+        if let Some(pause) = pause {
+            ctx.request_repaint_after(std::time::Duration::from_millis(pause));
         }
     }
 

@@ -56,7 +56,7 @@ pub(super) fn toolbar(ui: &mut Ui, facts: &Facts, out: &mut Outbox) {
         &[C::BoxSelect, C::SelectNone],
         &[C::Fit, C::Orthographic, C::ShowCage],
     ];
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         for (number, group) in groups.into_iter().enumerate() {
             if number > 0 {
                 ui.separator();

@@ -129,6 +129,8 @@ fn pattern_choices(ui: &mut Ui, solve: &SolveSession, facts: &Facts, chosen: &mu
 }
 
 fn empty(ui: &mut Ui, solve: &SolveSession, facts: &Facts, out: &mut Outbox) {
+    // Or the panel would shrink to its contents.
+    ui.take_available_height();
     ui.vertical_centered(|ui| {
         ui.add_space((ui.available_height() / 2.0 - 30.0).max(4.0));
         if solve.is_busy() {

@@ -169,7 +169,7 @@ fn busy(ui: &mut Ui, solve: &SolveSession, out: &mut Outbox) {
         Some(run) => {
             let decay = run.decay_db.map_or("the pulse comes in".to_owned(), |db| format!("decayed to {db:.0} dB"));
             format!(
-                "{} left · step {} · {decay}\n{} cells, {:.0} million cells per second",
+                "{} left · step {} · {decay}\n{} cells, {:.1} million updates per second",
                 time(run.seconds_left),
                 grouped(run.n_done),
                 grouped(run.n_tets),

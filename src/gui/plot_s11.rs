@@ -32,12 +32,17 @@ pub(super) fn ui(ui: &mut Ui, traces: &[Trace<'_>], curve: Curve) {
         .custom_y_axes(vec![values])
         .include_y(ends[0])
         .include_y(ends[1])
+        .grid_color(tokens.grid)
         .set_margin_fraction(egui::vec2(0.0, 0.03))
         .allow_scroll(false)
         .label_formatter(|_| None)
         .show_x(false)
         .show_y(false);
-    if curve == Curve::Phase {
+    if curve == Curve::Magnitude {
+        // Room below the lowest marker for its lettering.
+        let depths = traces.iter().filter_map(|t| t.resonance).map(|r| r.depth_db - 3.0);
+        plot = plot.include_y(depths.fold(ends[0], f64::min));
+    } else {
         plot = plot.y_grid_spacer(|_| (-4..=4).map(every_45).collect());
     }
     let shown = plot.show(ui, |plot| {

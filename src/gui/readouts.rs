@@ -12,7 +12,7 @@ use crate::units::GHZ;
 use egui::{Grid, Label, RichText, Ui};
 
 /// Width of the column of names and of each column of values, points.
-const WIDTHS: [f32; 2] = [112.0, 112.0];
+const WIDTHS: [f32; 2] = [106.0, 132.0];
 
 /// Room that the figures of a number of runs need, points.
 pub(super) fn width(n_runs: usize) -> f32 {

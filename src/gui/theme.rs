@@ -131,7 +131,7 @@ static LIGHT: Tokens = Tokens {
     handle_rim: rgb(26, 72, 136),
     series: [
         rgb(0, 92, 184),
-        rgb(196, 84, 0),
+        rgb(182, 76, 0),
         rgb(20, 122, 50),
         rgb(190, 20, 90),
         rgb(110, 60, 190),

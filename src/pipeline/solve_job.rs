@@ -189,7 +189,7 @@ mod tests {
         assert!(sweep.s11.iter().all(|s| s.norm().is_finite()), "numbers");
         job.cancel();
         assert!(!job.is_busy() && job.live().is_none(), "idle at once");
-        job.request(SolveRequest { shape: Shape::Cylinder, ..request.clone() });
+        job.request(SolveRequest::new(Project::default(), Shape::Cylinder, settings));
         assert_eq!(answer(&mut job).result.unwrap_err(), PipelineError::NoCylinder.into(), "the next one is answered");
         let n_before = request.state().as_ref().map(|state| state.record.total.len()).expect("it left its state");
         job.request(request.clone());
