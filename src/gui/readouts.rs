@@ -169,8 +169,10 @@ fn table<'a, T: 'a>(
         ui.label("");
         for run in runs {
             let name = RichText::new(&run.name).color(tokens.series[run.color]).strong();
-            ui.add_sized([WIDTHS[1] - 10.0, ROW_HEIGHT], Label::new(name).truncate().halign(egui::Align::LEFT))
-                .on_hover_text(&run.name);
+            ui.scope(|ui| {
+                ui.set_width(WIDTHS[1] - 10.0);
+                ui.add(Label::new(name).truncate()).on_hover_text(&run.name);
+            });
         }
         ui.end_row();
         for line in lines {

@@ -10,7 +10,7 @@ const MARKS: [f64; 5] = [0.2, 0.5, 1.0, 2.0, 5.0];
 /// Points of an arc.
 const N_ARC: u8 = 48;
 /// Room around the disc for its lettering, points.
-const MARGIN: f32 = 16.0;
+const MARGIN: f32 = 24.0;
 /// How far from a curve the pointer still reads it, points.
 const REACH: f32 = 14.0;
 
@@ -83,7 +83,9 @@ fn grid(painter: &Painter, disc: Disc, tokens: &Tokens) {
             draw(arc(|r| Complex::new(r, sign * mark)));
             let rim = reflection(Complex::new(0.0, sign * mark));
             let text = format!("{}j{mark}", if sign < 0.0 { "−" } else { "" });
-            let out = disc.place(rim * (1.0 + 9.0 / f64::from(disc.radius)));
+            // Letterings are wider than high.
+            let away = 8.0 + 7.0 * rim.re.abs();
+            let out = disc.place(rim * (1.0 + away / f64::from(disc.radius)));
             painter.text(out, Align2::CENTER_CENTER, text, font.clone(), tokens.weak);
         }
         let place = disc.place(reflection(Complex::from(mark)));
