@@ -38,7 +38,8 @@ impl FinishedRun {
         let then = &self.request.project;
         match self.request.shape {
             Shape::Flat => {
-                then.antenna != project.antenna || then.settings.tolerance_mm != project.settings.tolerance_mm
+                let tolerance = |project: &Project| project.settings.tolerance_mm.to_bits();
+                then.antenna != project.antenna || tolerance(then) != tolerance(project)
             }
             Shape::Deformed | Shape::Cylinder => then != project,
         }
