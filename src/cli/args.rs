@@ -199,6 +199,9 @@ pub struct SolveArgs {
     /// When the run stops
     #[arg(long, default_value = "decay")]
     pub(super) stop: StopChoice,
+    /// Leave the cells at the edges of sheets as they are: resonances come out too low, by some percent at coarse edges
+    #[arg(long)]
+    pub(super) no_edge_correction: bool,
     /// Go on where the same run was interrupted
     #[arg(long)]
     pub(super) resume: bool,

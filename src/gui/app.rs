@@ -7,13 +7,17 @@ use super::field::Refused;
 use super::mesh_export::MeshExport;
 use super::mesh_session::{MeshNews, MeshSession};
 use super::outbox::{Action, Outbox};
+use super::result_export::ResultExport;
 use super::session::{News, Session, first_project};
+use super::solve_session::{SolveNews, SolveSession};
 use super::status::{self, Messages, Weight};
 use super::theme;
 use super::ui_state::{RightTab, Tab, UiState};
 use super::viewport::{Sources, Viewport};
-use super::{paint, panel_antenna, panel_cage, panel_compensation, panel_distortion, panel_mesh};
+use super::{bars, paint, panel_antenna, panel_cage, panel_compensation, panel_distortion, panel_mesh};
+use super::{panel_results, panel_solve};
 use crate::pipeline::mesh_job::MeshJob;
+use crate::pipeline::solve_job::SolveJob;
 use crate::pipeline::worker::Worker;
 use crate::project::{CompensationMode, Edit, PresetEntry, Settings, file};
 use crate::render::Projection;
@@ -29,6 +33,7 @@ const SIDE_WIDTHS: [f32; 2] = [300.0, 316.0];
 pub(super) struct App {
     pub(super) session: Session,
     pub(super) mesh: MeshSession,
+    pub(super) solve: SolveSession,
     pub(super) state: UiState,
     viewport: Viewport,
     dialog: Dialog,
@@ -57,6 +62,7 @@ impl App {
         let mut app = Self {
             session: Session::new(first_project(), None, worker),
             mesh: MeshSession::new(MeshJob::spawn(wake())),
+            solve: SolveSession::new(SolveJob::spawn(wake())),
             state,
             viewport: Viewport::default(),
             dialog: Dialog::None,
@@ -80,6 +86,11 @@ impl App {
             has_hand_edits: !project.hand_edits.is_empty(),
             has_mesh: self.mesh.shown().is_some(),
             shows_mesh: self.state.mesh.shows,
+            is_solving: self.solve.is_busy(),
+            has_results: !self.solve.runs().is_empty(),
+            shows_results: self.state.solve.shows_results,
+            has_pattern: self.solve.runs().iter().any(|run| !run.result.patterns.is_empty()),
+            shows_pattern: self.state.solve.shows_pattern,
             compensates: project.settings.compensation != CompensationMode::None,
             orthographic: self.state.camera.projection == Projection::Orthographic,
             shows_cage: self.state.shows_cage,
@@ -88,56 +99,6 @@ impl App {
             selects_by_box: self.state.selects_by_box,
             theme: Some(self.state.theme),
         }
-    }
-
-    fn menus(&self, ui: &mut Ui, facts: &Facts, out: &mut Outbox) {
-        use Command as C;
-        let all = |keep: fn(&Command) -> bool| C::ALL.into_iter().filter(keep);
-        let menu = |ui: &mut Ui, title: &str, commands: Vec<Command>, out: &mut Outbox| {
-            ui.menu_button(title, |ui| {
-                for command in commands {
-                    if command.menu_item(ui, facts) {
-                        out.push(Action::Run(command));
-                    }
-                }
-            });
-        };
-        egui::MenuBar::new().ui(ui, |ui| {
-            menu(ui, "File", vec![C::New, C::Open, C::Save, C::SaveAs, C::Export, C::ExportMesh, C::Quit], out);
-            let edit = [C::Undo, C::Redo, C::SelectAll, C::SelectNone, C::BoxSelect, C::ResetSelected, C::ResetAll];
-            menu(ui, "Edit", edit.to_vec(), out);
-            menu(ui, "Antenna", vec![C::Compensate, C::CompensateNot, C::Mesh], out);
-            let mut view: Vec<Command> = vec![C::Fit];
-            view.extend(all(|c| matches!(c, C::LookFrom(_))));
-            view.extend([C::Orthographic, C::ShowCage, C::SeeThrough, C::ShowMesh, C::ShowLog]);
-            menu(ui, "View", view, out);
-            menu(ui, "Theme", all(|c| matches!(c, C::Theme(_))).collect(), out);
-            menu(ui, "Help", vec![C::Keys], out);
-        });
-    }
-
-    fn toolbar(&self, ui: &mut Ui, facts: &Facts, out: &mut Outbox) {
-        use Command as C;
-        let groups: [&[Command]; 6] = [
-            &[C::Open, C::Save, C::Export],
-            &[C::Undo, C::Redo],
-            &[C::Compensate, C::CompensateNot],
-            &[C::Mesh, C::ShowMesh],
-            &[C::BoxSelect, C::SelectNone],
-            &[C::Fit, C::Orthographic, C::ShowCage],
-        ];
-        ui.horizontal(|ui| {
-            for (number, group) in groups.into_iter().enumerate() {
-                if number > 0 {
-                    ui.separator();
-                }
-                for &command in group {
-                    if command.tool_button(ui, facts) {
-                        out.push(Action::Run(command));
-                    }
-                }
-            }
-        });
     }
 
     fn side_panels(&mut self, ui: &mut Ui, facts: &Facts, out: &mut Outbox) {
@@ -164,10 +125,12 @@ impl App {
                 ui.selectable_value(&mut self.state.right_tab, RightTab::Figures, "Deformation").on_hover_text(tip);
                 let tip = "The tetrahedral mesh of the antenna and the air around it";
                 ui.selectable_value(&mut self.state.right_tab, RightTab::Mesh, "Mesh").on_hover_text(tip);
+                let tip = "The field: reflection and radiation";
+                ui.selectable_value(&mut self.state.right_tab, RightTab::Solve, "Solve").on_hover_text(tip);
             });
             ui.separator();
             let tab = self.state.right_tab;
-            ScrollArea::vertical().auto_shrink(false).id_salt(tab == RightTab::Mesh).show(ui, |ui| match tab {
+            ScrollArea::vertical().auto_shrink(false).id_salt(tab as u8).show(ui, |ui| match tab {
                 RightTab::Figures => {
                     ui.heading("Distortion");
                     panel_distortion::ui(ui, &self.session, &mut self.state);
@@ -178,6 +141,9 @@ impl App {
                 }
                 RightTab::Mesh => {
                     panel_mesh::ui(ui, self.session.project(), &self.mesh, facts, &mut self.state, out);
+                }
+                RightTab::Solve => {
+                    panel_solve::ui(ui, self.session.project(), &mut self.solve, facts, &mut self.state, out);
                 }
             });
         });
@@ -201,6 +167,19 @@ impl App {
             Action::Run(command) => self.run(ctx, command),
             Action::StopWork => self.session.stop_work(),
             Action::CancelMesh => self.mesh.cancel(),
+            Action::CancelSolve => self.solve.cancel(),
+            Action::ResumeSolve => self.solve.resume(),
+            Action::ShowRun(serial, shows) => {
+                if let Some(run) = self.solve.run_mut(serial) {
+                    run.is_shown = shows;
+                }
+            }
+            Action::ColorRun(serial, color) => {
+                if let Some(run) = self.solve.run_mut(serial) {
+                    run.color = color;
+                }
+            }
+            Action::RemoveRun(serial) => self.solve.remove(serial),
             Action::Say(weight, text) => self.messages.say(weight, &text),
             Action::OpenPath(path) => self.open(&path),
             Action::SavePath(path) => {
@@ -216,7 +195,7 @@ impl App {
             Action::AskOpen => self.ask_open(),
             Action::Start(project) => {
                 self.session.replace(*project, None);
-                self.forget_mesh();
+                self.forget_computed();
                 self.state.fit = true;
                 self.state.selection.clear();
             }
@@ -275,6 +254,22 @@ impl App {
                 }
             }
             Command::ShowMesh => state.show_mesh(!state.mesh.shows),
+            Command::Solve => {
+                state.right_tab = RightTab::Solve;
+                state.solve.shows_results = true;
+                self.solve.start(self.session.project(), &state.solve);
+            }
+            Command::ShowResults => state.solve.shows_results = !state.solve.shows_results,
+            Command::ShowPattern => {
+                state.solve.shows_pattern = !state.solve.shows_pattern;
+                state.show_mesh(false);
+                state.fit = true;
+            }
+            Command::ExportResults => {
+                if let Some(dialog) = ResultExport::new(&self.solve, &self.folder(), &self.session.name()) {
+                    self.dialog = Dialog::ResultExport(Box::new(dialog));
+                }
+            }
             Command::Fit => state.fit = true,
             Command::LookFrom(view) => state.camera.look_from(view),
             Command::Orthographic => {
@@ -294,7 +289,9 @@ impl App {
         }
     }
 
-    fn forget_mesh(&mut self) {
+    /// Forgets what was computed for another project.
+    fn forget_computed(&mut self) {
+        self.solve.clear();
         self.mesh.clear();
         self.state.forget_mesh();
     }
@@ -312,6 +309,15 @@ impl App {
                 self.messages.say(Weight::Good, &text);
             }
             Some(MeshNews::Failed(text)) => self.messages.say(Weight::Error, &format!("No mesh: {text}")),
+        }
+    }
+
+    /// Takes what the solving thread has to say.
+    fn sync_solve(&mut self) {
+        match self.solve.sync() {
+            None => {}
+            Some(SolveNews::Done(text)) => self.messages.say(Weight::Good, &text),
+            Some(SolveNews::Failed(text)) => self.messages.say(Weight::Error, &format!("No result: {text}")),
         }
     }
 
@@ -390,7 +396,7 @@ impl App {
         match file::read(path) {
             Ok(project) => {
                 self.session.replace(project, Some(path.to_owned()));
-                self.forget_mesh();
+                self.forget_computed();
                 self.state.last_folder = path.parent().map(Path::to_owned);
                 self.state.selection.clear();
                 self.state.fit = true;
@@ -430,30 +436,41 @@ impl eframe::App for App {
             self.tell(news);
         }
         self.sync_mesh();
+        self.sync_solve();
         let facts = self.facts();
         let mut out = Outbox::default();
         let is_modal = !matches!(self.dialog, Dialog::None);
         if !is_modal && !self.viewport.is_dragging() {
             out.actions.extend(Command::pressed(&ctx, &facts).into_iter().map(Action::Run));
         }
-        Panel::top("menus").show(ui, |ui| self.menus(ui, &facts, &mut out));
-        Panel::top("tools").show(ui, |ui| self.toolbar(ui, &facts, &mut out));
+        Panel::top("menus").show(ui, |ui| bars::menus(ui, &facts, &mut out));
+        Panel::top("tools").show(ui, |ui| bars::toolbar(ui, &facts, &mut out));
         Panel::bottom("status").show(ui, |ui| {
             status::ui(ui, &self.session, &self.messages, &mut self.state, &mut out);
         });
         if self.state.shows_log {
             Panel::bottom("log").resizable(true).default_size(110.0).show(ui, |ui| self.messages.log(ui));
         }
+        let mut raised = 0.0;
+        if self.state.solve.shows_results {
+            let panel = Panel::bottom("results").resizable(true).default_size(panel_results::HEIGHT);
+            let shown = panel.size_range(panel_results::HEIGHTS).show(ui, |ui| {
+                let (project, chosen) = (self.session.project(), &mut self.state.solve);
+                panel_results::ui(ui, project, &self.solve, &facts, chosen, &mut out);
+            });
+            raised = shown.response.rect.height();
+        }
         self.side_panels(ui, &facts, &mut out);
         let pose = self.session.pose().cloned();
         CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
             let mesh = self.mesh.shown().filter(|_| self.state.mesh.shows);
-            let sources = Sources { session: &self.session, pose: pose.as_ref(), mesh };
+            let solve = Some(&self.solve).filter(|_| self.state.solve.shows_pattern);
+            let sources = Sources { session: &self.session, pose: pose.as_ref(), mesh, solve };
             self.viewport.ui(ui, sources, &mut self.state, &mut out);
         });
         let name = self.session.name();
         self.dialog.ui(&ctx, &name, &mut self.state, &mut out);
-        self.messages.show_toasts(&ctx);
+        self.messages.show_toasts(&ctx, raised);
         for action in out.actions {
             self.carry_out(&ctx, action);
         }
@@ -462,9 +479,14 @@ impl eframe::App for App {
         for news in self.session.sync() {
             self.tell(news);
         }
-        if self.session.is_busy() || self.mesh.is_busy() {
-            // For the progress.
-            ctx.request_repaint_after(std::time::Duration::from_millis(100));
+        // For the progress: rarely while the solver needs the processor.
+        let pause = match (self.session.is_busy() || self.mesh.is_busy(), self.solve.is_busy()) {
+            (true, _) => Some(100),
+            (false, true) => Some(500),
+            (false, false) => None,
+        };
+        if let Some(pause) = pause {
+            ctx.request_repaint_after(std::time::Duration::from_millis(pause));
         }
     }
 

@@ -26,6 +26,10 @@ pub(super) enum Command {
     Mesh,
     ExportMesh,
     ShowMesh,
+    Solve,
+    ShowResults,
+    ShowPattern,
+    ExportResults,
     Fit,
     LookFrom(StandardView),
     Orthographic,
@@ -47,6 +51,11 @@ pub(super) struct Facts {
     pub(super) compensates: bool,
     pub(super) has_mesh: bool,
     pub(super) shows_mesh: bool,
+    pub(super) is_solving: bool,
+    pub(super) has_results: bool,
+    pub(super) shows_results: bool,
+    pub(super) has_pattern: bool,
+    pub(super) shows_pattern: bool,
     pub(super) orthographic: bool,
     pub(super) shows_cage: bool,
     pub(super) sees_through: bool,
@@ -57,7 +66,7 @@ pub(super) struct Facts {
 
 impl Command {
     /// All commands, in the order of the menus.
-    pub(super) const ALL: [Self; 34] = [
+    pub(super) const ALL: [Self; 38] = [
         Self::New,
         Self::Open,
         Self::Save,
@@ -76,6 +85,10 @@ impl Command {
         Self::Mesh,
         Self::ExportMesh,
         Self::ShowMesh,
+        Self::Solve,
+        Self::ShowResults,
+        Self::ShowPattern,
+        Self::ExportResults,
         Self::Fit,
         Self::LookFrom(StandardView::Front),
         Self::LookFrom(StandardView::Back),
@@ -117,6 +130,10 @@ impl Command {
             Self::Mesh => ("Mesh", "Fill the antenna and the air around it with tetrahedra"),
             Self::ExportMesh => ("Export mesh…", "Write the mesh for a field solver or a viewer"),
             Self::ShowMesh => ("Mesh view", "Show the mesh, cut open, instead of the antenna in its cage"),
+            Self::Solve => ("Solve", "Compute the antenna's reflection over the band, in the background"),
+            Self::ShowResults => ("Results", "Show reflection, Smith chart and figures of the runs below the view"),
+            Self::ShowPattern => ("3-D pattern", "Draw the radiation pattern around the antenna"),
+            Self::ExportResults => ("Export results…", "Write a run's reflection as a table or a Touchstone file"),
             Self::Fit => ("Fit", "Show all of the antenna and its cage, or of the mesh"),
             Self::LookFrom(view) => match view {
                 StandardView::Front => ("Front", "Look along +y, x to the right"),
@@ -162,6 +179,10 @@ impl Command {
             Self::Mesh => vec![plain(Key::M)],
             Self::ExportMesh => vec![command_shift(Key::E)],
             Self::ShowMesh => vec![plain(Key::V)],
+            Self::Solve => vec![plain(Key::F5)],
+            Self::ShowResults => vec![plain(Key::P)],
+            Self::ShowPattern => vec![plain(Key::L)],
+            Self::ExportResults => vec![command_shift(Key::R)],
             Self::Fit => vec![plain(Key::F), plain(Key::Home)],
             Self::LookFrom(StandardView::Front) => vec![plain(Key::Num1)],
             Self::LookFrom(StandardView::Back) => vec![control(Key::Num1)],
@@ -188,6 +209,9 @@ impl Command {
             Self::ResetAll => facts.has_hand_edits,
             Self::CompensateNot => facts.compensates,
             Self::ExportMesh | Self::ShowMesh => facts.has_mesh,
+            Self::Solve => !facts.is_solving,
+            Self::ExportResults => facts.has_results,
+            Self::ShowPattern => facts.has_pattern,
             // There is no cage in the view of the mesh.
             Self::BoxSelect | Self::ShowCage | Self::SeeThrough => !facts.shows_mesh,
             _ => true,
@@ -199,6 +223,8 @@ impl Command {
         match self {
             Self::Orthographic => Some(facts.orthographic),
             Self::ShowMesh => Some(facts.shows_mesh),
+            Self::ShowResults => Some(facts.shows_results),
+            Self::ShowPattern => Some(facts.shows_pattern),
             Self::ShowCage => Some(facts.shows_cage),
             Self::SeeThrough => Some(facts.sees_through),
             Self::ShowLog => Some(facts.shows_log),
@@ -228,7 +254,7 @@ impl Command {
         // Letters and digits, and the keys by which text is selected, undone and redone.
         let is_text = |k: &KeyboardShortcut| {
             let edits_text = matches!(k.logical_key, Key::A | Key::Z | Key::Y);
-            (k.modifiers.is_none() && k.logical_key != Key::F1) || edits_text
+            (k.modifiers.is_none() && !matches!(k.logical_key, Key::F1 | Key::F5)) || edits_text
         };
         let mut found = Vec::new();
         for (shortcut, command) in keys {

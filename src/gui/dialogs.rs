@@ -7,6 +7,7 @@ use super::command::Command;
 use super::export_dialog::ExportDialog;
 use super::mesh_export::MeshExport;
 use super::outbox::{Action, Outbox};
+use super::result_export::ResultExport;
 use super::session::first_project;
 use super::theme::Tokens;
 use super::ui_state::UiState;
@@ -23,8 +24,8 @@ pub(super) enum Purpose {
     Open,
     Save,
     Folder,
-    /// A file to write a mesh to.
-    Mesh,
+    /// A file to write a mesh or a table to.
+    Data,
 }
 
 /// What to do once the unsaved changes are dealt with.
@@ -44,6 +45,7 @@ pub(super) enum Dialog {
     Unsaved(Next),
     Export(Box<ExportDialog>),
     MeshExport(Box<MeshExport>),
+    ResultExport(Box<ResultExport>),
     Keys,
 }
 
@@ -100,12 +102,12 @@ impl PathField {
             let folder = path.parent().map(Path::to_owned).unwrap_or_default();
             let dialog = rfd::FileDialog::new().set_directory(folder);
             let dialog = match purpose {
-                Purpose::Folder | Purpose::Mesh => dialog,
+                Purpose::Folder | Purpose::Data => dialog,
                 _ => dialog.add_filter("Conformant project", &[ENDING]),
             };
             let chosen = match purpose {
                 Purpose::Open => dialog.pick_file(),
-                Purpose::Save | Purpose::Mesh => dialog.save_file(),
+                Purpose::Save | Purpose::Data => dialog.save_file(),
                 Purpose::Folder => dialog.pick_folder(),
             };
             // The window may be gone by now.
@@ -219,6 +221,7 @@ impl Dialog {
                 Self::Unsaved(next) => unsaved(ui, *next, name, out),
                 Self::Export(dialog) => dialog.ui(ui, state),
                 Self::MeshExport(dialog) => dialog.ui(ui, state, out),
+                Self::ResultExport(dialog) => dialog.ui(ui, state, out),
                 Self::Keys => keys(ui),
             }
         });

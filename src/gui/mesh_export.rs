@@ -89,7 +89,7 @@ impl MeshExport {
             ready: Arc::clone(&mesh.ready),
             is_stale,
             format,
-            field: PathField::new(Purpose::Mesh, path.display().to_string()),
+            field: PathField::new(Purpose::Data, path.display().to_string()),
             overwrite: None,
             phase: Phase::Asking,
         }

@@ -1,8 +1,9 @@
 //! The window: a cage editor over the pipeline.
 //!
 //! It owns what the user looks at (`ui_state`), the open project with its history (`session`) and one worker
-//! thread, and the mesh made of it by another (`mesh_session`). Each frame: replies are collected, panels and the 3-D view are drawn from plain values and put their wishes
-//! into an outbox (`outbox`), the wishes are carried out (`app`), and the worker is sent the project if it changed.
+//! thread, the mesh made of it by another (`mesh_session`) and the runs of the solver by a third (`solve_session`). Each
+//! frame: replies are collected, panels and the 3-D view are drawn from plain values and put their wishes into an outbox
+//! (`outbox`), the wishes are carried out (`app`), and the worker is sent the project if it changed.
 //! Lengths here are millimetres, as in the project file; `scene` turns the domain into a picture.
 //!
 //! Not handled: several windows or projects at once, and tools that change the cage's topology by hand.
@@ -15,6 +16,7 @@
 )]
 
 mod app;
+mod bars;
 mod command;
 mod dialogs;
 mod export_dialog;
@@ -30,16 +32,28 @@ mod panel_cage;
 mod panel_compensation;
 mod panel_distortion;
 mod panel_mesh;
+mod panel_results;
+mod panel_solve;
+mod pattern_scene;
 mod picture;
+mod plot_s11;
+mod polar;
 mod preset_fields;
+mod readouts;
+mod result_export;
 mod scene;
 mod session;
+mod smith;
+mod solve_session;
 mod status;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
 mod tests_mesh;
+#[cfg(test)]
+mod tests_solve;
 mod theme;
+mod trace;
 mod ui_state;
 mod viewport;
 

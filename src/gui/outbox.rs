@@ -25,6 +25,16 @@ pub(super) enum Action {
     StopWork,
     /// Calls the meshing off.
     CancelMesh,
+    /// Calls the solver off.
+    CancelSolve,
+    /// Goes on with the run that was called off.
+    ResumeSolve,
+    /// Shows or hides the curves of a run, by its number.
+    ShowRun(u64, bool),
+    /// Gives the curves of a run another colour of the theme.
+    ColorRun(u64, usize),
+    /// Forgets a run.
+    RemoveRun(u64),
     /// Tells the user something.
     Say(Weight, String),
     /// Opens a project file.

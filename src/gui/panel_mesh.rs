@@ -73,14 +73,14 @@ pub(super) fn ui(
     worst(ui, shown, state);
 }
 
-fn heading(ui: &mut Ui, text: &str) {
+pub(super) fn heading(ui: &mut Ui, text: &str) {
     ui.add_space(6.0);
     ui.separator();
     ui.label(RichText::new(text).strong());
 }
 
 /// One of several values, each with its name and tooltip.
-fn choice<T: Copy + PartialEq>(
+pub(super) fn choice<T: Copy + PartialEq>(
     ui: &mut Ui,
     (name, tip): (&'static str, &'static str),
     value: &mut T,
@@ -104,16 +104,20 @@ fn choice<T: Copy + PartialEq>(
     ui.end_row();
 }
 
+/// Two rows: which of the antenna's shapes, and how finely it is meshed.
+pub(super) fn shape_and_density(ui: &mut Ui, project: &Project, shape: &mut Shape, density: &mut Density) {
+    let tip = "Which of the antenna's shapes is meant";
+    let shapes = [Shape::Deformed, Shape::Flat, Shape::Cylinder];
+    let why_not = "Only a single bend without hand edits lies on an exact cylinder";
+    let possible = |s| if s != Shape::Cylinder || has_cylinder(project) { Ok(()) } else { Err(why_not) };
+    choice(ui, ("Shape", tip), shape, &shapes, shape_text, possible);
+    let densities = [Density::Coarse, Density::Default, Density::Fine];
+    choice(ui, ("Density", "How fine the mesh is"), density, &densities, density_text, |_| Ok(()));
+}
+
 fn choices(ui: &mut Ui, project: &Project, chosen: &mut MeshUi) {
     rows(ui, "mesh choices", |ui| {
-        let tip = "Which of the antenna's shapes is meshed";
-        let shapes = [Shape::Deformed, Shape::Flat, Shape::Cylinder];
-        let why_not = "Only a single bend without hand edits lies on an exact cylinder";
-        let possible = |s| if s != Shape::Cylinder || has_cylinder(project) { Ok(()) } else { Err(why_not) };
-        choice(ui, ("Shape", tip), &mut chosen.shape, &shapes, shape_text, possible);
-        let tip = "How fine the mesh is";
-        let densities = [Density::Coarse, Density::Default, Density::Fine];
-        choice(ui, ("Density", tip), &mut chosen.density, &densities, density_text, |_| Ok(()));
+        shape_and_density(ui, project, &mut chosen.shape, &mut chosen.density);
         let tip = "How patch and ground are modelled";
         choice(ui, ("Metal", tip), &mut chosen.metal, &[Metal::Sheet, Metal::Solid], metal_text, |_| Ok(()));
     });

@@ -30,7 +30,7 @@ pub(super) struct Messages {
 impl Default for Messages {
     /// Notifications appear at the lower left, over the status line: there they hide no figures.
     fn default() -> Self {
-        let toasts = Toasts::new().with_anchor(Anchor::BottomLeft).with_margin(egui::vec2(8.0, 34.0));
+        let toasts = Toasts::new().with_anchor(Anchor::BottomLeft);
         Self { list: Vec::new(), toasts }
     }
 }
@@ -57,8 +57,10 @@ impl Messages {
         self.list.push((weight, text.to_owned()));
     }
 
-    /// Draws the notifications.
-    pub(super) fn show_toasts(&mut self, ctx: &egui::Context) {
+    /// Draws the notifications, `raised` points over the status line: above a panel that is there.
+    pub(super) fn show_toasts(&mut self, ctx: &egui::Context, raised: f32) {
+        let toasts = std::mem::take(&mut self.toasts);
+        self.toasts = toasts.with_margin(egui::vec2(8.0, 34.0 + raised));
         self.toasts.show(ctx);
     }
 

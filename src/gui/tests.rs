@@ -368,7 +368,7 @@ pub(super) fn lay_out(window: &mut Window) {
 
 /// Skips, saying so, where there is no graphics adapter; fails there if `REQUIRE_GPU` is set.
 #[allow(clippy::print_stderr, reason = "a skipped test says so")]
-fn has_adapter() -> bool {
+pub(super) fn has_adapter() -> bool {
     match crate::render::Gpu::headless() {
         Ok(_) => true,
         Err(error) => {

@@ -54,7 +54,12 @@ pub(super) struct Tokens {
     /// Cage vertices: normal, hovered, selected, locked; and their rim.
     pub(super) handles: [Color32; 4],
     pub(super) handle_rim: Color32,
+    /// Curves of a plot.
+    pub(super) series: [Color32; N_SERIES],
 }
+
+/// Curves that can be told apart by colour.
+pub(super) const N_SERIES: usize = 8;
 
 static DARK: Tokens = Tokens {
     panel: rgb(28, 30, 34),
@@ -84,6 +89,16 @@ static DARK: Tokens = Tokens {
     cage: rgb(120, 178, 240),
     handles: [rgb(206, 224, 246), rgb(255, 226, 120), rgb(255, 158, 44), rgb(120, 124, 130)],
     handle_rim: rgb(20, 26, 34),
+    series: [
+        rgb(92, 172, 255),
+        rgb(255, 158, 64),
+        rgb(110, 210, 120),
+        rgb(244, 116, 158),
+        rgb(190, 150, 255),
+        rgb(90, 215, 215),
+        rgb(232, 212, 90),
+        rgb(196, 202, 210),
+    ],
 };
 
 static LIGHT: Tokens = Tokens {
@@ -114,6 +129,16 @@ static LIGHT: Tokens = Tokens {
     cage: rgb(26, 92, 172),
     handles: [rgb(255, 255, 255), rgb(255, 208, 60), rgb(240, 122, 0), rgb(160, 165, 172)],
     handle_rim: rgb(26, 72, 136),
+    series: [
+        rgb(0, 92, 184),
+        rgb(182, 76, 0),
+        rgb(20, 122, 50),
+        rgb(190, 20, 90),
+        rgb(110, 60, 190),
+        rgb(0, 116, 128),
+        rgb(120, 98, 0),
+        rgb(80, 86, 96),
+    ],
 };
 
 impl Tokens {
@@ -219,6 +244,9 @@ mod tests {
             }
             assert!(contrast(t.text, t.button[1]) >= 4.5, "{theme:?}: button text");
             assert!(contrast(t.text, t.selected) >= 4.5, "{theme:?}: selected text");
+            for curve in t.series {
+                assert!(contrast(curve, t.field) >= 4.5 && contrast(curve, t.panel) >= 4.5, "{theme:?}: {curve:?}");
+            }
         }
     }
 }

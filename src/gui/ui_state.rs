@@ -54,10 +54,12 @@ pub(super) enum RightTab {
     Figures,
     /// The tetrahedral mesh.
     Mesh,
+    /// The field solver.
+    Solve,
 }
 
 /// What the colours of a mesh show.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum MeshPaint {
     /// What the cells are made of.
     #[default]
@@ -67,13 +69,15 @@ pub(super) enum MeshPaint {
 }
 
 /// What is meshed, and how the mesh is looked at.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 #[allow(clippy::struct_excessive_bools, reason = "each is an independent switch of the view")]
 pub(super) struct MeshUi {
     pub(super) shape: Shape,
     pub(super) density: Density,
     pub(super) metal: Metal,
     /// Whether the view shows the mesh instead of the antenna.
+    #[serde(skip)]
     pub(super) shows: bool,
     /// Axis across which the mesh is cut.
     pub(super) axis: usize,
@@ -88,8 +92,10 @@ pub(super) struct MeshUi {
     /// Whether the worst cells are marked.
     pub(super) marks_worst: bool,
     /// The worst cell last chosen, by its place in the list.
+    #[serde(skip)]
     pub(super) chosen: Option<usize>,
     /// The camera of the view that is not on show.
+    #[serde(skip)]
     pub(super) other_camera: Option<Camera>,
 }
 
@@ -118,6 +124,94 @@ impl MeshUi {
     pub(super) fn keep_within(&mut self, bounds_mm: &[[f64; 2]; 3]) {
         let [lo, hi] = bounds_mm[self.axis];
         self.place_mm = self.place_mm.clamp(lo, hi);
+    }
+}
+
+/// What the plot of the reflection shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) enum Curve {
+    /// |S11| in dB.
+    #[default]
+    Magnitude,
+    /// Its phase.
+    Phase,
+}
+
+/// When a run of the solver stops.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) enum Stop {
+    /// When the reflected voltage has fallen far enough.
+    #[default]
+    Decayed,
+    /// When the resonance stays where it is.
+    Settled,
+}
+
+/// Which results are shown below the view.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) enum ResultTab {
+    /// S11, Smith chart and their figures.
+    #[default]
+    Reflection,
+    /// Far field.
+    Pattern,
+}
+
+/// Which part of the far field the polar plots show.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) enum Polarization {
+    /// Both together.
+    #[default]
+    Total,
+    /// Along the flat patch's resonant length, and across it beside.
+    Parts,
+}
+
+/// What is solved, and how the results are looked at.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub(super) struct SolveUi {
+    pub(super) shape: Shape,
+    pub(super) density: Density,
+    /// Ends of the band where the user chose them; else it lies around the antenna's resonance.
+    pub(super) band_ghz: Option<[f64; 2]>,
+    pub(super) stop: Stop,
+    /// How far the reflected voltage is to fall, dB (positive).
+    pub(super) decay_db: f64,
+    /// It stops after this time in the antenna at the latest.
+    pub(super) longest_ns: f64,
+    /// Whether the results are shown below the view.
+    pub(super) shows_results: bool,
+    pub(super) tab: ResultTab,
+    pub(super) curve: Curve,
+    pub(super) polarization: Polarization,
+    /// Decibels from the rim of a pattern to its middle.
+    pub(super) range_db: f64,
+    /// Whether the pattern is drawn around the antenna.
+    #[serde(skip)]
+    pub(super) shows_pattern: bool,
+    /// Frequency of the patterns, Hz; the resonance's where it is `None`.
+    #[serde(skip)]
+    pub(super) pattern_freq: Option<f64>,
+}
+
+impl Default for SolveUi {
+    fn default() -> Self {
+        Self {
+            shape: Shape::default(),
+            density: Density::default(),
+            band_ghz: None,
+            stop: Stop::default(),
+            decay_db: 40.0,
+            longest_ns: 4.0,
+            shows_results: false,
+            tab: ResultTab::default(),
+            curve: Curve::default(),
+            polarization: Polarization::default(),
+            range_db: 30.0,
+            shows_pattern: false,
+            pattern_freq: None,
+        }
     }
 }
 
@@ -153,8 +247,8 @@ pub(super) struct UiState {
     /// Where the last file or folder was.
     pub(super) last_folder: Option<std::path::PathBuf>,
     camera_kept: Option<SavedCamera>,
-    #[serde(skip)]
     pub(super) mesh: MeshUi,
+    pub(super) solve: SolveUi,
     /// Selected cage vertices.
     #[serde(skip)]
     pub(super) selection: BTreeSet<u32>,
@@ -188,6 +282,7 @@ impl Default for UiState {
             last_folder: None,
             camera_kept: None,
             mesh: MeshUi::default(),
+            solve: SolveUi::default(),
             selection: BTreeSet::new(),
             selects_by_box: false,
             camera: Camera::default(),
@@ -230,6 +325,7 @@ impl UiState {
 
     /// Puts the camera where it was in the last run, if that is a possible place.
     pub(super) fn restore_camera(&mut self) {
+        self.mesh.axis = self.mesh.axis.min(2);
         let Some(kept) = self.camera_kept else { return };
         let numbers = [kept.yaw, kept.pitch, kept.distance];
         if numbers.iter().chain(&kept.target).all(|v| v.is_finite()) && kept.distance > 0.0 {

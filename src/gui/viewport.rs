@@ -9,8 +9,10 @@ use super::mesh_session::ShownMesh;
 use super::outbox::{Action, Outbox};
 use super::overlay;
 use super::paint::ScenePaint;
+use super::pattern_scene::{self, PatternScene};
 use super::scene::{Hot, SceneBuilder, gizmo, to_picture};
 use super::session::{Pose, Session, move_edit};
+use super::solve_session::SolveSession;
 use super::theme::Tokens;
 use super::ui_state::UiState;
 use crate::geometry::DVec3;
@@ -77,6 +79,7 @@ pub(super) struct Viewport {
     hot: Hot,
     builder: SceneBuilder,
     mesh: MeshScene,
+    pattern: PatternScene,
 }
 
 /// What there is to be seen.
@@ -87,6 +90,8 @@ pub(super) struct Sources<'a> {
     pub(super) pose: Option<&'a Pose>,
     /// The mesh, which is shown instead of antenna and cage.
     pub(super) mesh: Option<&'a ShownMesh>,
+    /// The runs whose pattern is drawn around the antenna.
+    pub(super) solve: Option<&'a SolveSession>,
 }
 
 /// What a frame of the view works with.
@@ -94,6 +99,7 @@ struct Frame<'a> {
     session: &'a Session,
     pose: Option<&'a Pose>,
     mesh: Option<&'a ShownMesh>,
+    solve: Option<&'a SolveSession>,
     /// Handles in picture units.
     handles: &'a [Vec3],
     gizmo: Option<Gizmo>,
@@ -122,6 +128,7 @@ impl Viewport {
     /// Draws the view and turns what the pointer does into wishes.
     pub(super) fn ui(&mut self, ui: &mut Ui, sources: Sources<'_>, state: &mut UiState, out: &mut Outbox) {
         let Sources { session, mesh, .. } = sources;
+        let solve = sources.solve.filter(|_| mesh.is_none());
         // The cage is neither seen nor grabbed while the mesh is shown.
         let pose = sources.pose.filter(|_| mesh.is_none());
         let rect = ui.available_rect_before_wrap();
@@ -133,7 +140,7 @@ impl Viewport {
         };
         state.selection.retain(|&v| pose.is_none_or(|p| (v as usize) < p.cage.n_handles()));
         let gizmo = gizmo(&handles, state, Tokens::here(ui), self.hot);
-        let frame = Frame { session, pose, mesh, handles: &handles, gizmo, rect };
+        let frame = Frame { session, pose, mesh, solve, handles: &handles, gizmo, rect };
         if std::mem::take(&mut state.fit) {
             self.fit(ui, &frame, state);
         }
@@ -171,7 +178,16 @@ impl Viewport {
         let tokens = Tokens::here(ui);
         match frame.mesh {
             Some(mesh) => self.mesh.scene(mesh, &state.mesh, tokens),
-            None => self.builder.scene(frame.session, frame.pose, state, tokens, self.hot),
+            None => {
+                let mut scene = self.builder.scene(frame.session, frame.pose, state, tokens, self.hot);
+                let antenna = scene.surfaces.iter().flat_map(|s| s.positions.iter());
+                let [lo, hi] =
+                    antenna.fold([Vec3::INFINITY, Vec3::NEG_INFINITY], |[lo, hi], &p| [lo.min(p), hi.max(p)]);
+                let pattern = frame.solve.filter(|_| lo.is_finite());
+                let pattern = pattern.and_then(|solve| self.pattern.surface(solve, &state.solve, [lo, hi]));
+                scene.surfaces.extend(pattern);
+                scene
+            }
         }
     }
 
@@ -308,6 +324,10 @@ impl Viewport {
         name_vertices(ui, response, frame, state, &view);
         let range = self.builder.range(state).filter(|_| frame.mesh.is_none());
         overlay::draw(ui, frame.rect, &view, state, range);
+        if let Some((_, pattern)) = frame.solve.and_then(|solve| pattern_scene::pattern(solve, &state.solve)) {
+            let ends = pattern_scene::range(pattern, state.solve.range_db);
+            overlay::pattern(ui, frame.rect, pattern.field.freq, ends, range.is_some());
+        }
         if let Some(mesh) = frame.mesh {
             let is_stale = mesh.is_stale(frame.session.project());
             overlay::mesh(ui, frame.rect, self.mesh.looks(), state.mesh.paint, is_stale);

@@ -7,11 +7,13 @@
 //! [`deform`] does the whole job once. The window asks a [`Worker`](worker::Worker) instead, which answers the newest
 //! request only and, while the user drags, moves the last surface's vertices through the new pose without splitting or
 //! compensating anew ([`live`]). Where a pose is refused, [`retreat()`] finds the furthest valid project on the way to
-//! it. A [`MeshJob`](mesh_job::MeshJob) fills antenna and air with tetrahedra beside all that.
+//! it. A [`MeshJob`](mesh_job::MeshJob) fills antenna and air with tetrahedra beside all that, and a
+//! [`SolveJob`](solve_job::SolveJob) solves the field in them.
 
 mod error;
 mod estimate;
 mod fields;
+pub mod job;
 pub mod live;
 mod looks;
 mod mesh;
@@ -19,6 +21,7 @@ pub mod mesh_job;
 mod retreat;
 mod scene;
 mod solve;
+pub mod solve_job;
 mod stages;
 mod stored;
 mod summary;

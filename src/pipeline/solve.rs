@@ -2,14 +2,14 @@
 
 use super::PipelineError;
 use super::looks::Looks;
-use super::mesh::{MeshSettings, Meshed, Shape, mesh};
+use super::mesh::{MeshSettings, Meshed, Shape, mesh, room};
 use crate::project::Project;
 use crate::results::{
     FarField, FeedLine, FittedResonance, Sweep, continued_sweep, far_fields, fit, fitted_resonance, frequencies, sweep,
 };
 use crate::task::Task;
 use crate::tlm::{
-    Checkpoint, FieldRecorder, Huygens, Network, NetworkSettings, Pulse, Record, Run, StepLimit, TlmError,
+    Checkpoint, FieldRecorder, Huygens, Loads, Network, NetworkSettings, Pulse, Record, Run, StepLimit, TlmError,
 };
 use crate::units::from_mm;
 use serde::{Deserialize, Serialize};
@@ -29,6 +29,8 @@ pub struct SolveSettings {
     pub longest: f64,
     /// Frequencies whose far fields are found, Hz.
     pub pattern_freqs: Vec<f64>,
+    /// Whether the cells at the edges of sheets hold the energy of the singular field there.
+    pub edge_correction: bool,
 }
 
 /// Far fields over a band.
@@ -40,7 +42,7 @@ impl SolveSettings {
     pub fn new(mesh: MeshSettings, band: [f64; 2]) -> Self {
         let [lo, hi] = band;
         let pattern_freqs = frequencies(lo, hi, (hi - lo) / (N_PATTERNS - 1.0));
-        Self { mesh, band, stop: StopRule::Decay { db: 40.0 }, longest: 4e-9, pattern_freqs }
+        Self { mesh, band, stop: StopRule::Decay { db: 40.0 }, longest: 4e-9, pattern_freqs, edge_correction: true }
     }
 }
 
@@ -101,6 +103,8 @@ impl Solved {
 const REFERENCE: f64 = 50.0;
 /// Share of cells whose stubs are clipped: doubles the step, shifts no resonance visibly.
 const CLIPPED: f64 = 0.003;
+/// Share of the air around the antenna in which waves are absorbed before they reach the outer boundary.
+const ABSORBING: f64 = 0.6;
 /// A record whose modes leave over more than this part of it is not continued.
 const MISFIT: f64 = 0.02;
 /// Steps between two looks at the stop rule.
@@ -171,7 +175,12 @@ pub fn solve(
     let [lo, hi] = settings.band;
     let pulse = Pulse::new(lo, hi)?;
     let meshed = mesh(project, shape, settings.mesh, task)?;
-    let how = NetworkSettings { step: StepLimit::Clip(CLIPPED), ..NetworkSettings::new(pulse.center) };
+    let how = NetworkSettings {
+        step: StepLimit::Clip(CLIPPED),
+        edge_correction: settings.edge_correction,
+        loads: Loads { absorber: Some(ABSORBING * room(&project.antenna.to_params())), ..Loads::default() },
+        ..NetworkSettings::new(pulse.center)
+    };
     let network = Network::<f32>::new(&meshed.mesh, &how, task)?;
     let port_impedance = network.port_impedance.ok_or(TlmError::NoPort)?;
     let line = feed_line(project, port_impedance);

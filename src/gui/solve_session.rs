@@ -1,0 +1,296 @@
+//! The runs of the field solver: those that are done, the one under way, and the thread that does it.
+//!
+//! Nothing here draws. Finished runs stay until they are removed or another project is opened, even when the project
+//! has gone on or a new run fails or is called off; whether one still fits is a comparison of projects.
+
+use super::mesh_session::{density_text, grouped};
+use super::theme::N_SERIES;
+use super::ui_state::{SolveUi, Stop};
+use crate::pipeline::solve_job::{LiveRun, RunResult, SolveJob, SolveRequest};
+use crate::pipeline::{Density, Estimate, MeshSettings, Shape, SolveSettings, StopRule, estimate};
+use crate::project::{BendPlane, CompensationMode, PresetSpec, Project};
+use crate::task::Progress;
+use crate::tet::Metal;
+use crate::units::{C0, GHZ};
+use std::collections::BTreeSet;
+use std::time::Instant;
+
+/// Relative tolerance of a settled resonance: ten times as much cuts coarse runs off before weak modes show.
+const TOLERANCE: f64 = 5e-4;
+/// Cells times steps per second before any run has said how fast this machine is.
+const USUAL_SPEED: f64 = 4e7;
+
+/// A finished run, a number that tells it from others, and how it is shown.
+#[derive(Clone, Debug)]
+pub(super) struct FinishedRun {
+    pub(super) serial: u64,
+    pub(super) request: SolveRequest,
+    pub(super) result: RunResult,
+    pub(super) name: String,
+    /// Place among the theme's colours of curves.
+    pub(super) color: usize,
+    pub(super) is_shown: bool,
+}
+
+impl FinishedRun {
+    /// Whether what was solved has changed since: the flat antenna does not change with the cage.
+    pub(super) fn is_stale(&self, project: &Project) -> bool {
+        let then = &self.request.project;
+        match self.request.shape {
+            Shape::Flat => {
+                let tolerance = |project: &Project| project.settings.tolerance_mm.to_bits();
+                then.antenna != project.antenna || tolerance(then) != tolerance(project)
+            }
+            Shape::Deformed | Shape::Cylinder => then != project,
+        }
+    }
+}
+
+/// Something that happened to the solving.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum SolveNews {
+    /// There is a result.
+    Done(String),
+    /// There is none, and why.
+    Failed(String),
+}
+
+/// The runs of the open project.
+#[derive(Debug)]
+pub(super) struct SolveSession {
+    job: SolveJob,
+    runs: Vec<FinishedRun>,
+    live: Option<LiveRun>,
+    /// The last request, while it is under way and after it was called off.
+    asked: Option<SolveRequest>,
+    /// What the last estimate was for, and the estimate.
+    estimate: Option<(SolveRequest, Result<Estimate, String>)>,
+    started: Option<Instant>,
+    error: Option<String>,
+    serial: u64,
+}
+
+impl SolveSession {
+    /// Starts with no run.
+    pub(super) fn new(job: SolveJob) -> Self {
+        Self { job, runs: Vec::new(), live: None, asked: None, estimate: None, started: None, error: None, serial: 0 }
+    }
+
+    /// The finished runs, oldest first.
+    pub(super) fn runs(&self) -> &[FinishedRun] {
+        &self.runs
+    }
+
+    /// The runs whose curves are to be seen.
+    pub(super) fn shown(&self) -> impl DoubleEndedIterator<Item = &FinishedRun> {
+        self.runs.iter().filter(|run| run.is_shown)
+    }
+
+    /// The run under way, once the field runs.
+    pub(super) fn live(&self) -> Option<&LiveRun> {
+        self.live.as_ref()
+    }
+
+    /// Why the last attempt has no result.
+    pub(super) fn error(&self) -> Option<&str> {
+        self.error.as_deref()
+    }
+
+    /// Whether a run is under way.
+    pub(super) fn is_busy(&self) -> bool {
+        self.job.is_busy()
+    }
+
+    /// What is being done.
+    pub(super) fn progress(&self) -> Option<Progress> {
+        self.job.progress()
+    }
+
+    /// Seconds since the run under way was begun.
+    pub(super) fn elapsed(&self) -> f64 {
+        self.started.map_or(0.0, |start| start.elapsed().as_secs_f64())
+    }
+
+    /// Begins to solve a project as chosen.
+    pub(super) fn start(&mut self, project: &Project, chosen: &SolveUi) {
+        self.ask(request(project, chosen));
+    }
+
+    /// Goes on with the run that was called off.
+    pub(super) fn resume(&mut self) {
+        if let Some(request) = self.asked.take() {
+            self.ask(request);
+        }
+    }
+
+    /// The run that was called off and can go on.
+    pub(super) fn interrupted(&self) -> Option<String> {
+        self.asked.as_ref().filter(|_| !self.is_busy()).map(name)
+    }
+
+    fn ask(&mut self, request: SolveRequest) {
+        (self.error, self.live) = (None, None);
+        self.started = Some(Instant::now());
+        self.asked = Some(request.clone());
+        self.job.request(request);
+    }
+
+    /// What a run of a project as chosen would take, or why it cannot be.
+    pub(super) fn estimate(&mut self, project: &Project, chosen: &SolveUi) -> Result<Estimate, String> {
+        let request = request(project, chosen);
+        if let Some((_, estimate)) = self.estimate.as_ref().filter(|(of, _)| of.is_same(&request)) {
+            return estimate.clone();
+        }
+        let speed = self.runs.last().map_or(USUAL_SPEED, |run| run.result.speed);
+        let found = estimate(project, request.shape, &request.settings, speed).map_err(|e| e.to_string());
+        self.estimate = Some((request, found.clone()));
+        found
+    }
+
+    /// Calls the run off; what is on show stays.
+    ///
+    /// It can go on later if the field ran already.
+    pub(super) fn cancel(&mut self) {
+        self.job.cancel();
+        if self.live.take().is_none() {
+            self.asked = None;
+        }
+    }
+
+    /// Forgets everything: another project was opened.
+    pub(super) fn clear(&mut self) {
+        self.cancel();
+        self.runs.clear();
+        (self.asked, self.estimate, self.error) = (None, None, None);
+    }
+
+    /// The finished run of a number, to change how it is shown.
+    pub(super) fn run_mut(&mut self, serial: u64) -> Option<&mut FinishedRun> {
+        self.runs.iter_mut().find(|run| run.serial == serial)
+    }
+
+    /// Forgets a finished run.
+    pub(super) fn remove(&mut self, serial: u64) {
+        self.runs.retain(|run| run.serial != serial);
+    }
+
+    /// The colour that the next run will have: the first that no other one has.
+    pub(super) fn next_color(&self) -> usize {
+        let used: BTreeSet<usize> = self.runs.iter().map(|run| run.color).collect();
+        (0..N_SERIES).find(|color| !used.contains(color)).unwrap_or(self.runs.len() % N_SERIES)
+    }
+
+    /// Adds a finished run; one of the very same request takes the place of the older.
+    pub(super) fn add(&mut self, request: SolveRequest, result: RunResult) {
+        self.serial += 1;
+        if let Some(same) = self.runs.iter_mut().find(|run| run.request.is_same(&request)) {
+            (same.serial, same.result, same.is_shown) = (self.serial, result, true);
+            return;
+        }
+        let (color, plain) = (self.next_color(), name(&request));
+        let is_taken = |name: &str| self.runs.iter().any(|run| run.name == name);
+        let numbered = (2..).map(|n| format!("{plain} ({n})"));
+        let name = std::iter::once(plain.clone()).chain(numbered).find(|n| !is_taken(n)).unwrap_or_default();
+        self.runs.push(FinishedRun { serial: self.serial, request, result, name, color, is_shown: true });
+    }
+
+    /// Takes what the thread has to say.
+    pub(super) fn sync(&mut self) -> Option<SolveNews> {
+        if let Some(live) = self.job.live() {
+            self.live = Some(live);
+        }
+        let reply = self.job.poll()?;
+        (self.live, self.asked, self.estimate) = (None, None, None);
+        match reply.result {
+            Ok(result) => {
+                let cells = grouped(result.n_tets);
+                let found = match &result.resonance {
+                    Some(r) => format!("{:.1} dB at {:.3} GHz", r.depth_db, r.freq / GHZ),
+                    None => "no resonance in the band".to_owned(),
+                };
+                let news = SolveNews::Done(format!("Solved: {found}, {cells} cells in {:.0} s", result.seconds));
+                self.add(reply.request, *result);
+                Some(news)
+            }
+            Err(error) => {
+                let text = error.to_string();
+                self.error = Some(text.clone());
+                Some(SolveNews::Failed(text))
+            }
+        }
+    }
+}
+
+/// What is to be solved of a project, as chosen.
+pub(super) fn request(project: &Project, chosen: &SolveUi) -> SolveRequest {
+    let mesh = MeshSettings { density: chosen.density, metal: Metal::Sheet };
+    let band = chosen.band_ghz.unwrap_or_else(|| usual_band_ghz(project)).map(|f| f * GHZ);
+    let stop = match chosen.stop {
+        Stop::Decayed => StopRule::Decay { db: chosen.decay_db },
+        Stop::Settled => StopRule::Settled { tolerance: TOLERANCE },
+    };
+    let settings = SolveSettings { stop, longest: chosen.longest_ns * 1e-9, ..SolveSettings::new(mesh, band) };
+    SolveRequest::new(project.clone(), chosen.shape, settings)
+}
+
+/// A third below to a third above the resonance of an ideal cavity under the patch, GHz, to a hundredth.
+pub(super) fn usual_band_ghz(project: &Project) -> [f64; 2] {
+    let params = project.antenna.to_params();
+    let cavity = C0 / (2.0 * params.length * params.substrate.eps_r.sqrt());
+    [2.0 / 3.0, 4.0 / 3.0].map(|part| (part * cavity / GHZ * 100.0).round() / 100.0)
+}
+
+/// What a run is called: its shape, and the density where it is not the usual one.
+fn name(request: &SolveRequest) -> String {
+    let project = &request.project;
+    let active: Vec<&PresetSpec> = project.presets.iter().filter(|p| p.enabled).map(|p| &p.preset).collect();
+    let bend = match active[..] {
+        [PresetSpec::Bend { plane, radius_mm, .. }] if project.hand_edits.is_empty() => {
+            let plane = if *plane == BendPlane::E { "E" } else { "H" };
+            Some(format!("R {radius_mm} {plane}"))
+        }
+        _ => None,
+    };
+    let shape = match (request.shape, bend) {
+        (Shape::Flat, _) => "Flat".to_owned(),
+        (Shape::Cylinder, bend) => format!("Cylinder {}", bend.unwrap_or_default()),
+        (Shape::Deformed, bend) => {
+            let how = match project.settings.compensation {
+                CompensationMode::None => "raw",
+                CompensationMode::Wl => "WL",
+                CompensationMode::Isometric => "isometric",
+            };
+            format!("{}, {how}", bend.unwrap_or_else(|| "Deformed".to_owned()))
+        }
+    };
+    match request.settings.mesh.density {
+        Density::Default => shape,
+        other => format!("{shape}, {}", density_text(other).0.to_lowercase()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gui::session::first_project;
+
+    #[test]
+    fn a_run_is_named_after_what_was_solved() {
+        let chosen = SolveUi::default();
+        let of = |project: &Project, chosen: &SolveUi| name(&request(project, chosen));
+        let mut project = first_project();
+        assert_eq!(of(&project, &chosen), "R 10 H, raw", "one bend");
+        assert_eq!(of(&project, &SolveUi { shape: Shape::Cylinder, ..chosen.clone() }), "Cylinder R 10 H", "exact");
+        project.settings.compensation = CompensationMode::Isometric;
+        project.hand_edits.insert(3, [0.1, 0.0, 0.0]);
+        let coarse = SolveUi { density: Density::Coarse, ..chosen };
+        assert_eq!(of(&project, &coarse), "Deformed, isometric, coarse", "moved by hand");
+        assert_eq!(of(&project, &SolveUi { shape: Shape::Flat, ..coarse }), "Flat, coarse", "flat");
+    }
+
+    #[test]
+    fn the_usual_band_lies_around_the_cavity() {
+        let [lo, hi] = usual_band_ghz(&first_project());
+        assert!((lo..hi).contains(&10.8) && hi / lo < 2.01, "{lo} to {hi} GHz");
+    }
+}
