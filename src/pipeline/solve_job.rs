@@ -174,7 +174,7 @@ mod tests {
         let mesh = MeshSettings { density: Density::Coarse, ..MeshSettings::default() };
         let usual = SolveSettings::new(mesh, [8.0 * GHZ, 13.0 * GHZ]);
         let settings = SolveSettings { longest: 1e-6, stop: StopRule::Decay { db: 200.0 }, ..usual };
-        let request = SolveRequest::new(Project::default(), Shape::Flat, settings);
+        let request = SolveRequest::new(Project::default(), Shape::Flat, settings.clone());
         let mut job = SolveJob::spawn(|| ());
         job.request(request.clone());
         let start = Instant::now();

@@ -1,5 +1,7 @@
 //! Whole meshes against closed forms: cavities, the energy of a closed box, the edge of a sheet.
 
+#![allow(clippy::print_stdout, reason = "tests tell what they measure")]
+
 use super::assembly::Assembly;
 use super::blocks::{FLUX, LANES};
 use super::cell::EDGES;
