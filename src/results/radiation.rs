@@ -271,7 +271,6 @@ mod tests {
     #[test]
     fn a_dipoles_field_on_a_faceted_sphere_gives_its_far_field() {
         let (coarse, fine) = (errors(6), errors(12));
-        println!("far field, radiated and crossing power, relative errors: {coarse:?}, {fine:?}");
         // Edges of an eighth and a sixteenth of the wavelength: second order.
         for (c, f) in coarse.iter().zip(fine) {
             assert!(f.abs() < 0.35 * c.abs(), "{f} against {c}");

@@ -2,7 +2,7 @@
 
 use super::TlmError;
 use super::assembly::{Assembly, ascending};
-use super::blocks::{Block, Boundary, LANES};
+use super::blocks::{Block, Boundary, LANES, Reflected, State};
 use super::cell::{EDGES, MARGIN};
 use super::loads::Loads;
 use super::real::Real;
@@ -131,6 +131,17 @@ impl<T: Real> Network<T> {
         let corners = ascending(mesh.tets[tet].vertices);
         let is_it = |&(i, j): &(usize, usize)| ends.contains(&corners[i]) && ends.contains(&corners[j]);
         self.live_edges(lane)[EDGES.iter().position(is_it)?]
+    }
+
+    /// Memory that a step reads and writes if every number moves once each way, bytes per cell: coefficients, state,
+    /// reflected currents, edge voltages, and the lists that connect them.
+    #[must_use]
+    pub fn traffic(&self) -> f64 {
+        let block = size_of::<Block<T>>() + 2 * size_of::<State<T>>() + 2 * size_of::<Reflected<T>>();
+        let list = size_of_val(&self.places[..]) + size_of_val(&self.starts[..]) + size_of_val(&self.weights[..]);
+        let total =
+            block * self.blocks.len() + size_of_val(&self.boundary[..]) + list + 2 * size_of::<T>() * self.n_edges;
+        total as f64 / self.n_tets as f64
     }
 
     /// Lanes of some of the mesh's cells, with the cell.
