@@ -445,13 +445,35 @@ fn solve_finds_the_flat_antennas_resonance_and_writes_s11() {
     for file in ["s11.csv", "s11_plot.svg", "s11_plot.png", "s11_plot.csv"] {
         assert!(bench.path("s").join(file).exists(), "{file}");
     }
+    assert_patterns(&report["pattern"], &bench);
     bench.fails("solve a.json --band 14 7", 1, "both must be positive");
+    bench.fails("solve a.json --band 8 13 --pattern-ghz 10 14", 1, "no pattern at 14 GHz");
     bench.fails("solve a.json --shape flat --density coarse --band 7 14 --resume", 1, "no checkpoint of this run");
     assert_eq!(report["is_settled"], true, "{report}");
     let within = report["fitted_resonance_error_ghz"].as_f64().unwrap();
     assert!(within < 0.05 && (4.0..6.0).contains(&report["q"].as_f64().unwrap()), "{report}");
     #[cfg(unix)]
     interrupted_and_resumed_it_gives_the_same_bits(&bench);
+}
+
+fn assert_patterns(report: &serde_json::Value, bench: &Bench) {
+    let number = |key: &str| report[key].as_f64().unwrap();
+    // An independent solver has 7.6 +- 0.1 dBi, and half-power widths of 80 and 76 degrees.
+    assert!((7.4..7.7).contains(&number("boresight_directivity_dbi")), "{report}");
+    assert!((78.0..82.0).contains(&number("half_power_width_e_deg")), "{report}");
+    assert!((74.5..78.5).contains(&number("half_power_width_h_deg")), "{report}");
+    // The loss tangent times the unloaded quality factor, about 8, is lost under the patch: 0.7 %; a little in the line.
+    assert!((0.985..0.995).contains(&number("efficiency")), "{report}");
+    assert!((number("power_balance") - 1.0).abs() < 0.02, "{report}");
+    assert!((number("near_power_balance") - 1.0).abs() < 0.02, "{report}");
+    let cuts = fs::read_to_string(bench.path("s/pattern.csv")).unwrap();
+    assert!(cuts.starts_with("freq_ghz,psi_deg,e_plane_total_dbi") && cuts.lines().count() == 362, "{cuts:.200}");
+    let source = fs::read_to_string(bench.path("s/pattern.ffs")).unwrap();
+    let n_lines = source.lines().count();
+    assert!(source.contains("// Radiated/Accepted/Stimulated Power") && n_lines > 73 * 37, "{source:.200}");
+    for file in ["radiation.csv", "pattern_plot.svg", "pattern_plot.png"] {
+        assert!(bench.path("s").join(file).exists(), "{file}");
+    }
 }
 
 #[cfg(unix)]

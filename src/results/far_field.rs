@@ -194,8 +194,10 @@ impl FarField {
         (self.powers.accepted > 0.0).then(|| (self.powers.radiated + self.powers.lost) / self.powers.accepted)
     }
 
-    /// The same with the power through the closed surface for that in the far field: the cells balance it exactly, so what
-    /// is missing is the port's or the run's; `None` where nothing is accepted.
+    /// The same with the power through the closed surface for that in the far field; `None` where nothing is accepted.
+    ///
+    /// Cells balance it exactly, so what is missing was taken by the port's plane from waves other than the line's own
+    /// (0.9 % with 3 mm of line below the paper's patch, 0.1 % with 7 mm, at any density), or by the end of the run.
     #[must_use]
     pub fn near_balance(&self) -> Option<f64> {
         (self.powers.accepted > 0.0).then(|| (self.powers.crossing + self.powers.lost) / self.powers.accepted)

@@ -158,6 +158,7 @@ fn towards(elements: &[Element], wavenumber: f64, theta: f64, phi: f64) -> [Comp
 }
 
 #[cfg(test)]
+#[allow(clippy::print_stdout, reason = "a test")]
 mod tests {
     use super::*;
     use crate::geometry::DQuat;
