@@ -93,7 +93,7 @@ fn header(ui: &mut Ui, project: &Project, solve: &SolveSession, facts: &Facts, c
                         }
                         if solve.live().is_some_and(|run| run.sweep.is_some()) {
                             let color = Tokens::here(ui).series[solve.next_color()];
-                            ui.label(RichText::new("┅ under way").color(color));
+                            ui.label(RichText::new("--- under way").color(color));
                         }
                     });
                 });

@@ -131,10 +131,10 @@ fn grid(painter: &Painter, dial: Dial, tokens: &Tokens) {
             painter.circle_stroke(dial.center, r, thin);
         }
         let unit = if k == 0 { " dBi" } else { "" };
-        // Between two rays, where the curves of most antennas are thin.
-        let at = dial.place(15_f64.to_radians(), dbi);
+        // Towards the back, where the curves of most antennas are small.
+        let at = dial.place(std::f64::consts::PI, dbi);
         let galley = painter.layout_no_wrap(format!("{dbi:.0}{unit}"), font.clone(), tokens.weak);
-        let area = Align2::LEFT_TOP.anchor_size(at + vec2(1.0, 1.0), galley.size());
+        let area = Align2::LEFT_BOTTOM.anchor_size(at + vec2(3.0, -1.0), galley.size());
         painter.rect_filled(area, 2.0, tokens.field.gamma_multiply(0.8));
         painter.galley(area.min, galley, tokens.weak);
     }

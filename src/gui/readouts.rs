@@ -77,7 +77,7 @@ const PATTERN: &[Line<Pattern>] = &[
     Line {
         name: "  towards θ, φ",
         tip: "Direction of the greatest directivity: θ from +z, φ from +x",
-        text: |p| Some(p.max.1.map(|a| format!("{:.0}°", a.to_degrees())).join(", ")),
+        text: |p| Some(p.max.1.map(|a| format!("{:.0}°", a.to_degrees().round() % 360.0)).join(", ")),
     },
     Line {
         name: "Towards +z",
