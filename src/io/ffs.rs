@@ -1,7 +1,7 @@
 //! Far-field source files (`.ffs`, version 3.0) for CST and all that reads them: complex patterns with their powers.
 //!
 //! [`FarField`]s of one grid enter, one block of numbers each. Phi runs from 0 to 360 degrees, both ends written, as the
-//! outer loop; theta from 0 to 180. Columns: phi, theta (degrees), real and imaginary part of E_theta, then of E_phi:
+//! outer loop; theta from 0 to 180. Columns: phi, theta (degrees), real and imaginary part of `E_theta`, then of `E_phi`:
 //! `r E exp(+jkr)` in volts, peak phasors for the stimulated power of the head, in watts. The phase's origin is the
 //! origin of coordinates. Reading is not handled.
 //!

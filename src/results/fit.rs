@@ -322,8 +322,8 @@ mod tests {
             let (record, start) = record(late);
             fitted_resonance(&record, start, BAND).is_none()
         };
-        assert!(none(&[]) && none(&[1.0; 50]) && none(&[0.0; 4000]), "too short, or nothing");
-        assert!(none(&[f64::NAN; 4000]), "no numbers");
+        assert!(none(&[]) && none(&[1.0; 50]) && none(&vec![0.0; 4000]), "too short, or nothing");
+        assert!(none(&vec![f64::NAN; 4000]), "no numbers");
         assert!(none(&series(&[mode(20e9, 5.0, Complex::from(1.0))], 4000, 0.0)), "outside of the band");
         let growing = Mode { decay: -1e9, ..patch()[0] };
         assert!(none(&series(&[growing], 4000, 0.0)), "growing");

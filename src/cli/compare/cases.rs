@@ -28,7 +28,7 @@ const SEGMENTS: usize = 10;
 
 impl Group {
     /// The variants of a project's antenna.
-    pub(super) fn of_project(project: Project, file: &str) -> Self {
+    pub(super) fn of_project(project: &Project, file: &str) -> Self {
         Self::new("s11", format!("Reflection, {file}"), project)
     }
 
@@ -44,7 +44,7 @@ impl Group {
             let preset = PresetSpec::Bend { plane, radius_mm, rule: RuleSpec::Tangent, kept_plane_mm: 0.0 };
             let segments = if plane == BendPlane::H { [SEGMENTS, 1] } else { [1, SEGMENTS] };
             let title = format!("Bent in the {plane:?}-plane, R = {radius_mm} mm");
-            Self::new(name, title, with_preset(preset, segments))
+            Self::new(name, title, &with_preset(preset, segments))
         });
         let (radius_mm, amplitude_mm) = (20.0, 10.0);
         let shapes = [
@@ -54,7 +54,7 @@ impl Group {
             ("twist", PresetSpec::Twist { amplitude_mm, rate_deg_per_mm: 0.573 }),
         ];
         let shapes = shapes
-            .map(|(name, preset)| Self::new(name, format!("Section VI, {name}"), with_preset(preset, [SEGMENTS; 2])));
+            .map(|(name, preset)| Self::new(name, format!("Section VI, {name}"), &with_preset(preset, [SEGMENTS; 2])));
         match which {
             PaperChoice::Bends => bends.into(),
             PaperChoice::Shapes => shapes.into(),
@@ -62,8 +62,8 @@ impl Group {
         }
     }
 
-    fn new(name: &'static str, title: String, project: Project) -> Self {
-        let has_cylinder = Scene::new(&project).is_ok_and(|scene| scene.cylinder().is_some());
+    fn new(name: &'static str, title: String, project: &Project) -> Self {
+        let has_cylinder = Scene::new(project).is_ok_and(|scene| scene.cylinder().is_some());
         let variant = |name, title, shape, compensation: CompensationMode| {
             let mut project = project.clone();
             project.settings.compensation = compensation;

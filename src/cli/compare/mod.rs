@@ -26,7 +26,9 @@ use std::time::Duration;
 
 pub(super) fn run(args: &CompareArgs, task: &Task) -> Result<()> {
     let (groups, dir) = match (&args.file, args.paper) {
-        (Some(path), _) => (vec![Group::of_project(file::read(path)?, &path.display().to_string())], results_dir(path)),
+        (Some(path), _) => {
+            (vec![Group::of_project(&file::read(path)?, &path.display().to_string())], results_dir(path))
+        }
         (None, Some(which)) => (Group::of_paper(which), args.out.join("results")),
         (None, None) => unreachable!("one of them is required"),
     };
