@@ -456,7 +456,7 @@ fn solve_finds_the_flat_antennas_resonance_and_writes_s11() {
     interrupted_and_resumed_it_gives_the_same_bits(&bench);
 }
 
-fn assert_patterns(report: &serde_json::Value, bench: &Bench) {
+fn assert_patterns(report: &Value, bench: &Bench) {
     let number = |key: &str| report[key].as_f64().unwrap();
     // An independent solver has 7.6 +- 0.1 dBi, and half-power widths of 80 and 76 degrees.
     assert!((7.4..7.7).contains(&number("boresight_directivity_dbi")), "{report}");
