@@ -209,11 +209,6 @@ pub(super) fn longest_air_edge(params: &PatchParams, density: Density) -> f64 {
     C0 / (TOP_OVER_CAVITY * cavity(params)) / density.fineness().per_wavelength
 }
 
-/// Air between the antenna and the outer boundary: half a wavelength, m.
-pub(super) fn room(params: &PatchParams) -> f64 {
-    C0 / cavity(params) / 2.0
-}
-
 /// The air: half a wavelength of room.
 fn air(params: &PatchParams, block: &Block, settings: MeshSettings) -> AirSettings {
     let h_max = longest_air_edge(params, settings.density);
@@ -221,5 +216,5 @@ fn air(params: &PatchParams, block: &Block, settings: MeshSettings) -> AirSettin
         block.vertices.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), &p| (lo.min(p), hi.max(p)));
     let center = (lo + hi) / 2.0;
     let reach = block.vertices.iter().map(|p| p.distance(center)).fold(0.0, f64::max);
-    AirSettings { radius: reach + room(params), sizing: SizingSettings { h_max, grading: GRADING } }
+    AirSettings { radius: reach + C0 / cavity(params) / 2.0, sizing: SizingSettings { h_max, grading: GRADING } }
 }

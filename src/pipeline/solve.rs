@@ -2,14 +2,14 @@
 
 use super::PipelineError;
 use super::looks::Looks;
-use super::mesh::{MeshSettings, Meshed, Shape, mesh, room};
+use super::mesh::{MeshSettings, Meshed, Shape, mesh};
 use crate::project::Project;
 use crate::results::{
     FarField, FeedLine, FittedResonance, Sweep, continued_sweep, far_fields, fit, fitted_resonance, frequencies, sweep,
 };
 use crate::task::Task;
 use crate::tlm::{
-    Checkpoint, FieldRecorder, Huygens, Loads, Network, NetworkSettings, Pulse, Record, Run, StepLimit, TlmError,
+    Checkpoint, FieldRecorder, Huygens, Network, NetworkSettings, Pulse, Record, Run, StepLimit, TlmError,
 };
 use crate::units::from_mm;
 use serde::{Deserialize, Serialize};
@@ -103,8 +103,6 @@ impl Solved {
 const REFERENCE: f64 = 50.0;
 /// Share of cells whose stubs are clipped: doubles the step, shifts no resonance visibly.
 const CLIPPED: f64 = 0.003;
-/// Share of the air around the antenna in which waves are absorbed before they reach the outer boundary.
-const ABSORBING: f64 = 0.6;
 /// A record whose modes leave over more than this part of it is not continued.
 const MISFIT: f64 = 0.02;
 /// Steps between two looks at the stop rule.
@@ -178,7 +176,6 @@ pub fn solve(
     let how = NetworkSettings {
         step: StepLimit::Clip(CLIPPED),
         edge_correction: settings.edge_correction,
-        loads: Loads { absorber: Some(ABSORBING * room(&project.antenna.to_params())), ..Loads::default() },
         ..NetworkSettings::new(pulse.center)
     };
     let network = Network::<f32>::new(&meshed.mesh, &how, task)?;

@@ -1,7 +1,5 @@
 //! Whole meshes against closed forms: cavities, the energy of a closed box, the edge of a sheet.
 
-#![allow(clippy::print_stdout, reason = "tests tell what they measure")]
-
 use super::assembly::Assembly;
 use super::blocks::{FLUX, LANES};
 use super::cell::EDGES;
@@ -225,14 +223,12 @@ fn resonances_of_a_cavity_are_of_second_order() {
         let h = mean_edge(&mesh);
         let closed = Closed::new(&mesh, true);
         let errors = [0, 1, 2].map(|m| closed.wave_number(|p| cavity_mode(m, p), exact[m]) / exact[m] - 1.0);
-        println!("h {h:.4}: {} cells: {errors:?}", mesh.tets.len());
         for (error, k) in errors.iter().zip(exact) {
             assert!(error.abs() < SECOND_ORDER * (k * h).powi(2), "h {h}: {error:e} at {k}");
         }
         (h, (errors.iter().map(|e| e * e).sum::<f64>() / 3.0).sqrt())
     };
     let errors = SIZES.map(of_size);
-    println!("order {:.2}", order(&errors));
     assert!(SECOND.contains(&order(&errors)), "order {}: {errors:?}", order(&errors));
 }
 
@@ -275,13 +271,11 @@ fn a_half_filled_cavity_is_of_second_order_too() {
         let mesh = layered_box(CAVITY, &[EPS_R, 1.0], size);
         let h = mean_edge(&mesh);
         let error = Closed::new(&mesh, true).wave_number(field, exact) / exact - 1.0;
-        println!("h {h:.4}: {} cells: {error:+.2e}", mesh.tets.len());
         // The wave is shorter in the filled half.
         assert!(error.abs() < SECOND_ORDER * EPS_R * (exact * h).powi(2), "h {h}: {error:e}");
         (h, error)
     };
     let errors = SIZES.map(of_size);
-    println!("half filled: order {:.2}", order(&errors));
     assert!(SECOND.contains(&order(&errors)), "order {}: {errors:?}", order(&errors));
 }
 
@@ -356,7 +350,6 @@ fn sheet_edges_hold_the_energy_of_the_singular_field() {
             let mesh = slit_cylinder(m, (height * m as f64).round() as usize, height);
             let [without, with] =
                 [false, true].map(|on| Closed::new(&mesh, on).wave_number(field, exact) / exact - 1.0);
-            println!("{name}, {m} cells: {} cells, {without:+.2e} without, {with:+.2e} with", mesh.tets.len());
             last = (without, with);
         }
         assert!(last.1.abs() < 0.25 * last.0.abs() && last.0.abs() > 0.01, "{name}: {last:?}");
@@ -400,6 +393,5 @@ fn a_closed_box_keeps_its_energy_over_a_million_steps() {
     let before = energy(&closed, &mut run);
     run.advance(STEPS, &task).expect("not cancelled");
     let drift = energy(&closed, &mut run) / before - 1.0;
-    println!("{} cells: energy changed by {drift:+.2e} in double precision", mesh.tets.len());
     assert!(drift.abs() < 1e-9, "{drift:e}");
 }
