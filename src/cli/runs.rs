@@ -3,19 +3,15 @@
 use super::args::StopChoice;
 use crate::io::{IoError, checkpoint};
 use crate::pipeline::{
-    self, Job, MeshSettings, PipelineError, Running, Shape, SolveSettings, Solved, StopRule, Stored,
+    self, Job, MeshSettings, PipelineError, RunFigures, Running, Shape, SolveSettings, Solved, StopRule, Stored,
 };
 use crate::project::Project;
 use crate::task::Task;
 use crate::tet::Metal;
-use crate::units::{C0, GHZ};
+use crate::units::GHZ;
 use anyhow::{Context, Result};
 use std::path::Path;
 use std::time::{Duration, Instant};
-
-/// Relative tolerance of the settled rule. Ten times as much already cuts coarse runs off before weak modes show;
-/// a tenth waits longer than the decay by 40 dB does.
-const TOLERANCE: f64 = 5e-4;
 
 /// Where runs are kept, and how.
 #[derive(Clone, Copy, Debug)]
@@ -44,21 +40,15 @@ pub(super) fn settings(
     band_ghz: Option<&[f64]>,
     stop: StopChoice,
 ) -> SolveSettings {
-    let mut settings = SolveSettings::new(MeshSettings { density, metal: Metal::Sheet }, band(band_ghz, project));
+    let band = match band_ghz {
+        Some(&[lo, hi]) => [lo * GHZ, hi * GHZ],
+        _ => SolveSettings::usual_band(project),
+    };
+    let mut settings = SolveSettings::new(MeshSettings { density, metal: Metal::Sheet }, band);
     if stop == StopChoice::Settled {
-        settings.stop = StopRule::Settled { tolerance: TOLERANCE };
+        settings.stop = StopRule::SETTLED;
     }
     settings
-}
-
-/// The band in Hz: as given, or around the resonance of an ideal cavity under the patch.
-fn band(given_ghz: Option<&[f64]>, project: &Project) -> [f64; 2] {
-    if let Some(&[lo, hi]) = given_ghz {
-        return [lo * GHZ, hi * GHZ];
-    }
-    let params = project.antenna.to_params();
-    let cavity = C0 / (2.0 * params.length * params.substrate.eps_r.sqrt());
-    [cavity * 2.0 / 3.0, cavity * 4.0 / 3.0]
 }
 
 /// Solves a shape and keeps the result in a folder; a run that is called off leaves its checkpoint there.
@@ -97,7 +87,7 @@ pub(super) fn solve(
         }
         solved => solved?,
     };
-    let stored = Stored::new(job, &solved);
+    let stored = Stored::new(job, &solved.sweep, solved.fitted, RunFigures::of(&solved));
     stored.save(dir)?;
     if path.exists() {
         std::fs::remove_file(&path).with_context(|| format!("removing {}", path.display()))?;

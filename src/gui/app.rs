@@ -1,7 +1,7 @@
 //! The window: collects replies, draws the panels, carries out what they ask for.
 
 use super::command::{Command, Facts};
-use super::dialogs::{Dialog, Next, PathDialog, Purpose};
+use super::dialogs::{Dialog, Next};
 use super::export_dialog::ExportDialog;
 use super::field::Refused;
 use super::mesh_export::MeshExport;
@@ -19,10 +19,10 @@ use super::{panel_results, panel_solve};
 use crate::pipeline::mesh_job::MeshJob;
 use crate::pipeline::solve_job::SolveJob;
 use crate::pipeline::worker::Worker;
-use crate::project::{CompensationMode, Edit, PresetEntry, Settings, file};
+use crate::project::{CompensationMode, Edit, PresetEntry, Settings};
 use crate::render::Projection;
 use egui::{CentralPanel, Frame, Panel, ScrollArea, Ui, ViewportCommand};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 const STATE_KEY: &str = "window";
 /// Widths of the side panels, points: all inputs fit, and 1280 points leave the view the larger half.
@@ -36,7 +36,7 @@ pub(super) struct App {
     pub(super) solve: SolveSession,
     pub(super) state: UiState,
     viewport: Viewport,
-    dialog: Dialog,
+    pub(super) dialog: Dialog,
     pub(super) messages: Messages,
     /// Whether the window may close without asking.
     may_close: bool,
@@ -290,7 +290,7 @@ impl App {
     }
 
     /// Forgets what was computed for another project.
-    fn forget_computed(&mut self) {
+    pub(super) fn forget_computed(&mut self) {
         self.solve.clear();
         self.mesh.clear();
         self.state.forget_mesh();
@@ -316,7 +316,10 @@ impl App {
     fn sync_solve(&mut self) {
         match self.solve.sync() {
             None => {}
-            Some(SolveNews::Done(text)) => self.messages.say(Weight::Good, &text),
+            Some(SolveNews::Done(text)) => {
+                self.messages.say(Weight::Good, &text);
+                self.keep_results();
+            }
             Some(SolveNews::Failed(text)) => self.messages.say(Weight::Error, &format!("No result: {text}")),
         }
     }
@@ -337,71 +340,12 @@ impl App {
         }
     }
 
-    fn go_on(&mut self, ctx: &egui::Context, next: Option<Next>) {
+    pub(super) fn go_on(&mut self, ctx: &egui::Context, next: Option<Next>) {
         match next {
             None => {}
             Some(Next::New) => self.carry_out(ctx, Action::Start(Box::new(first_project()))),
             Some(Next::Open) => self.ask_open(),
             Some(Next::Quit) => self.carry_out(ctx, Action::CloseWindow),
-        }
-    }
-
-    fn folder(&self) -> PathBuf {
-        let own = self.session.path.as_ref().and_then(|p| p.parent().map(Path::to_owned));
-        let home = || std::env::var_os("HOME").map(PathBuf::from);
-        own.or_else(|| self.state.last_folder.clone()).or_else(home).unwrap_or_default()
-    }
-
-    fn ask_open(&mut self) {
-        self.dialog = Dialog::Path(PathDialog::new(Purpose::Open, &self.folder().join(""), None));
-    }
-
-    fn ask_save(&mut self, then: Option<Next>) {
-        let suggestion = match &self.session.path {
-            Some(path) => path.clone(),
-            None => self.folder().join("antenna.json"),
-        };
-        self.dialog = Dialog::Path(PathDialog::new(Purpose::Save, &suggestion, then));
-    }
-
-    fn save_then(&mut self, ctx: &egui::Context, then: Option<Next>) {
-        match self.session.path.clone() {
-            Some(path) => {
-                if self.save(&path) {
-                    self.go_on(ctx, then);
-                }
-            }
-            None => self.ask_save(then),
-        }
-    }
-
-    fn save(&mut self, path: &Path) -> bool {
-        self.dialog = Dialog::None;
-        match file::write(path, self.session.project()) {
-            Ok(()) => {
-                self.session.mark_saved(path);
-                self.state.last_folder = path.parent().map(Path::to_owned);
-                self.messages.say(Weight::Good, &format!("Saved {}", path.display()));
-                true
-            }
-            Err(error) => {
-                self.messages.say(Weight::Error, &error.to_string());
-                false
-            }
-        }
-    }
-
-    fn open(&mut self, path: &Path) {
-        self.dialog = Dialog::None;
-        match file::read(path) {
-            Ok(project) => {
-                self.session.replace(project, Some(path.to_owned()));
-                self.forget_computed();
-                self.state.last_folder = path.parent().map(Path::to_owned);
-                self.state.selection.clear();
-                self.state.fit = true;
-            }
-            Err(error) => self.messages.say(Weight::Error, &error.to_string()),
         }
     }
 

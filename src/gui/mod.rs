@@ -21,6 +21,7 @@ mod command;
 mod dialogs;
 mod export_dialog;
 mod field;
+mod files;
 mod mesh_export;
 mod mesh_scene;
 mod mesh_session;

@@ -5,11 +5,12 @@ use super::field::{Number, rows, symbol_button};
 use super::mesh_session::grouped;
 use super::outbox::{Action, Outbox};
 use super::panel_mesh::{choice, heading, shape_and_density};
-use super::solve_session::{SolveSession, usual_band_ghz};
+use super::solve_session::SolveSession;
 use super::theme::Tokens;
 use super::ui_state::{SolveUi, Stop, UiState};
-use crate::pipeline::Estimate;
+use crate::pipeline::{Estimate, SolveSettings};
 use crate::project::Project;
+use crate::units::GHZ;
 use egui::{ProgressBar, RichText, Spinner, Ui};
 
 const LOWER: Number = Number::new("band from", "Band from", "GHz", 0.05)
@@ -69,7 +70,7 @@ pub(super) fn ui(
         }
         return;
     }
-    if solve.runs().last().is_some_and(|run| run.is_stale(project)) {
+    if solve.shown().next_back().is_some_and(|run| run.is_stale(project)) {
         let text = "⚠ The geometry has changed since the last run.";
         ui.add(egui::Label::new(RichText::new(text).color(tokens.warning)).wrap());
         if !solve.is_busy() && ui.button("Solve again").on_hover_text("Solve the geometry as it is now").clicked() {
@@ -83,7 +84,7 @@ pub(super) fn ui(
 fn choices(ui: &mut Ui, project: &Project, chosen: &mut SolveUi) {
     rows(ui, "solve choices", |ui| {
         shape_and_density(ui, project, &mut chosen.shape, &mut chosen.density);
-        let usual = usual_band_ghz(project);
+        let usual = SolveSettings::usual_band(project).map(|f| (f / GHZ * 100.0).round() / 100.0);
         let mut band = chosen.band_ghz.unwrap_or(usual);
         for (k, number) in [LOWER, UPPER].into_iter().enumerate() {
             let (_, new) = number.show(ui, band[k]);
@@ -168,8 +169,9 @@ fn busy(ui: &mut Ui, solve: &SolveSession, out: &mut Outbox) {
     let text = match live {
         Some(run) => {
             let decay = run.decay_db.map_or("the pulse comes in".to_owned(), |db| format!("decayed to {db:.0} dB"));
+            let most = if run.decay_db.is_none() { "at most " } else { "" };
             format!(
-                "{} left · step {} · {decay}\n{} cells, {:.1} million updates per second",
+                "{most}{} left · step {} · {decay}\n{} cells, {:.1} million updates per second",
                 time(run.seconds_left),
                 grouped(run.n_done),
                 grouped(run.n_tets),

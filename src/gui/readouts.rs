@@ -51,25 +51,29 @@ const REFLECTION: &[Line<RunResult>] = &[
     Line {
         name: "Port as meshed",
         tip: "Impedance of the coaxial line in the mesh: how well its circles are meshed",
-        text: |r| Some(format!("{:.2} Ω", r.port_impedance)),
+        text: |r| Some(format!("{:.2} Ω", r.figures.port_impedance_ohm)),
     },
     Line {
         name: "Decay",
         tip: "How far the reflected voltage had fallen",
-        text: |r| Some(format!("{:.1} dB", r.residual_db)),
+        text: |r| Some(format!("{:.1} dB", r.figures.residual_db)),
     },
     Line {
         name: "Stopped by",
         tip: "The stop rule chosen, or the longest time",
-        text: |r| Some(if r.is_settled { "its rule" } else { "the time limit" }.to_owned()),
+        text: |r| Some(if r.figures.is_settled { "its rule" } else { "the time limit" }.to_owned()),
     },
-    Line { name: "Cells", tip: "Tetrahedra", text: |r| Some(grouped(r.n_tets)) },
+    Line { name: "Cells", tip: "Tetrahedra", text: |r| Some(grouped(r.figures.tets)) },
     Line {
         name: "Steps",
         tip: "Time steps, and the length of one",
-        text: |r| Some(format!("{} × {:.0} fs", grouped(r.n_steps), r.dt * 1e15)),
+        text: |r| Some(format!("{} × {:.0} fs", grouped(r.figures.steps), r.figures.dt_s * 1e15)),
     },
-    Line { name: "Time", tip: "Time that meshing and solving took", text: |r| Some(format!("{:.1} s", r.seconds)) },
+    Line {
+        name: "Time",
+        tip: "Time that meshing and solving took",
+        text: |r| Some(format!("{:.1} s", r.figures.seconds)),
+    },
 ];
 
 const PATTERN: &[Line<Pattern>] = &[

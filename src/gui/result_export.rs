@@ -41,7 +41,10 @@ impl Format {
                 let remarks = [
                     format!("Conformant, {}", run.name),
                     "reference plane: the ground's top; fields exp(+jwt)".to_owned(),
-                    format!("port impedance as meshed {:.3} ohm, {} cells", result.port_impedance, result.n_tets),
+                    format!(
+                        "port impedance as meshed {:.3} ohm, {} cells",
+                        result.figures.port_impedance_ohm, result.figures.tets
+                    ),
                 ];
                 touchstone::write(&result.sweep, &remarks, path)?;
             }

@@ -6,17 +6,19 @@
 use super::mesh_session::{density_text, grouped};
 use super::theme::N_SERIES;
 use super::ui_state::{SolveUi, Stop};
+use crate::io::IoError;
 use crate::pipeline::solve_job::{LiveRun, RunResult, SolveJob, SolveRequest};
-use crate::pipeline::{Density, Estimate, MeshSettings, Shape, SolveSettings, StopRule, estimate};
+use crate::pipeline::{
+    Density, Estimate, Job, MeshSettings, Shape, SolveSettings, StopRule, Stored, estimate, results_dir,
+};
 use crate::project::{BendPlane, CompensationMode, PresetSpec, Project};
 use crate::task::Progress;
 use crate::tet::Metal;
-use crate::units::{C0, GHZ};
+use crate::units::GHZ;
 use std::collections::BTreeSet;
+use std::path::Path;
 use std::time::Instant;
 
-/// Relative tolerance of a settled resonance: ten times as much cuts coarse runs off before weak modes show.
-const TOLERANCE: f64 = 5e-4;
 /// Cells times steps per second before any run has said how fast this machine is.
 const USUAL_SPEED: f64 = 4e7;
 
@@ -24,7 +26,7 @@ const USUAL_SPEED: f64 = 4e7;
 #[derive(Clone, Debug)]
 pub(super) struct FinishedRun {
     pub(super) serial: u64,
-    pub(super) request: SolveRequest,
+    pub(super) job: Job,
     pub(super) result: RunResult,
     pub(super) name: String,
     /// Place among the theme's colours of curves.
@@ -35,14 +37,7 @@ pub(super) struct FinishedRun {
 impl FinishedRun {
     /// Whether what was solved has changed since: the flat antenna does not change with the cage.
     pub(super) fn is_stale(&self, project: &Project) -> bool {
-        let then = &self.request.project;
-        match self.request.shape {
-            Shape::Flat => {
-                let tolerance = |project: &Project| project.settings.tolerance_mm.to_bits();
-                then.antenna != project.antenna || tolerance(then) != tolerance(project)
-            }
-            Shape::Deformed | Shape::Cylinder => then != project,
-        }
+        self.job.is_stale(project)
     }
 }
 
@@ -63,6 +58,8 @@ pub(super) struct SolveSession {
     live: Option<LiveRun>,
     /// The last request, while it is under way and after it was called off.
     asked: Option<SolveRequest>,
+    /// Whether the field of the last request has run, so that it can go on after it is called off.
+    has_run: bool,
     /// What the last estimate was for, and the estimate.
     estimate: Option<(SolveRequest, Result<Estimate, String>)>,
     started: Option<Instant>,
@@ -73,7 +70,17 @@ pub(super) struct SolveSession {
 impl SolveSession {
     /// Starts with no run.
     pub(super) fn new(job: SolveJob) -> Self {
-        Self { job, runs: Vec::new(), live: None, asked: None, estimate: None, started: None, error: None, serial: 0 }
+        Self {
+            job,
+            runs: Vec::new(),
+            live: None,
+            asked: None,
+            has_run: false,
+            estimate: None,
+            started: None,
+            error: None,
+            serial: 0,
+        }
     }
 
     /// The finished runs, oldest first.
@@ -113,6 +120,7 @@ impl SolveSession {
 
     /// Begins to solve a project as chosen.
     pub(super) fn start(&mut self, project: &Project, chosen: &SolveUi) {
+        self.has_run = false;
         self.ask(request(project, chosen));
     }
 
@@ -125,7 +133,7 @@ impl SolveSession {
 
     /// The run that was called off and can go on.
     pub(super) fn interrupted(&self) -> Option<String> {
-        self.asked.as_ref().filter(|_| !self.is_busy()).map(name)
+        self.asked.as_ref().filter(|_| !self.is_busy()).map(|request| name(&request.job()))
     }
 
     fn ask(&mut self, request: SolveRequest) {
@@ -141,7 +149,7 @@ impl SolveSession {
         if let Some((_, estimate)) = self.estimate.as_ref().filter(|(of, _)| of.is_same(&request)) {
             return estimate.clone();
         }
-        let speed = self.runs.last().map_or(USUAL_SPEED, |run| run.result.speed);
+        let speed = self.runs.last().map_or(USUAL_SPEED, |run| run.result.figures.tet_steps_per_second);
         let found = estimate(project, request.shape, &request.settings, speed).map_err(|e| e.to_string());
         self.estimate = Some((request, found.clone()));
         found
@@ -152,7 +160,8 @@ impl SolveSession {
     /// It can go on later if the field ran already.
     pub(super) fn cancel(&mut self) {
         self.job.cancel();
-        if self.live.take().is_none() {
+        self.live = None;
+        if !self.has_run {
             self.asked = None;
         }
     }
@@ -180,36 +189,67 @@ impl SolveSession {
         (0..N_SERIES).find(|color| !used.contains(color)).unwrap_or(self.runs.len() % N_SERIES)
     }
 
-    /// Adds a finished run; one of the very same request takes the place of the older.
-    pub(super) fn add(&mut self, request: SolveRequest, result: RunResult) {
+    /// Adds a finished run; one of the very same job takes the place of the older.
+    pub(super) fn add(&mut self, job: Job, result: RunResult) {
         self.serial += 1;
-        if let Some(same) = self.runs.iter_mut().find(|run| run.request.is_same(&request)) {
+        if let Some(same) = self.runs.iter_mut().find(|run| run.job == job) {
             (same.serial, same.result, same.is_shown) = (self.serial, result, true);
             return;
         }
-        let (color, plain) = (self.next_color(), name(&request));
+        let (color, plain) = (self.next_color(), name(&job));
         let is_taken = |name: &str| self.runs.iter().any(|run| run.name == name);
         let numbered = (2..).map(|n| format!("{plain} ({n})"));
         let name = std::iter::once(plain.clone()).chain(numbered).find(|n| !is_taken(n)).unwrap_or_default();
-        self.runs.push(FinishedRun { serial: self.serial, request, result, name, color, is_shown: true });
+        self.runs.push(FinishedRun { serial: self.serial, job, result, name, color, is_shown: true });
+    }
+
+    /// Keeps the results beside a project file, but for those that are kept there already.
+    pub(super) fn keep(&self, project_file: &Path) -> Result<(), IoError> {
+        let dir = results_dir(project_file);
+        for run in &self.runs {
+            if !matches!(Stored::find(&run.job, &dir), Ok(Some(_))) {
+                run.result.stored(run.job.clone()).save(&dir)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds the newest results kept beside a project file, and shows those of the project as it is, or else the last;
+    /// says why one of them cannot be read.
+    pub(super) fn add_kept(&mut self, project: &Project, project_file: &Path) -> Result<(), IoError> {
+        let mut outcome = Ok(());
+        for found in Stored::newest(&results_dir(project_file), N_SERIES) {
+            match found {
+                Ok(stored) => self.add(stored.job().clone(), RunResult::from(&stored)),
+                Err(error) => outcome = Err(error),
+            }
+        }
+        self.runs.iter_mut().for_each(|run| run.is_shown = !run.is_stale(project));
+        if self.shown().next().is_none()
+            && let Some(last) = self.runs.last_mut()
+        {
+            last.is_shown = true;
+        }
+        outcome
     }
 
     /// Takes what the thread has to say.
     pub(super) fn sync(&mut self) -> Option<SolveNews> {
         if let Some(live) = self.job.live() {
-            self.live = Some(live);
+            (self.live, self.has_run) = (Some(live), true);
         }
         let reply = self.job.poll()?;
         (self.live, self.asked, self.estimate) = (None, None, None);
         match reply.result {
             Ok(result) => {
-                let cells = grouped(result.n_tets);
+                let cells = grouped(result.figures.tets);
                 let found = match &result.resonance {
                     Some(r) => format!("{:.1} dB at {:.3} GHz", r.depth_db, r.freq / GHZ),
                     None => "no resonance in the band".to_owned(),
                 };
-                let news = SolveNews::Done(format!("Solved: {found}, {cells} cells in {:.0} s", result.seconds));
-                self.add(reply.request, *result);
+                let news =
+                    SolveNews::Done(format!("Solved: {found}, {cells} cells in {:.0} s", result.figures.seconds));
+                self.add(reply.request.job(), *result);
                 Some(news)
             }
             Err(error) => {
@@ -224,25 +264,19 @@ impl SolveSession {
 /// What is to be solved of a project, as chosen.
 pub(super) fn request(project: &Project, chosen: &SolveUi) -> SolveRequest {
     let mesh = MeshSettings { density: chosen.density, metal: Metal::Sheet };
-    let band = chosen.band_ghz.unwrap_or_else(|| usual_band_ghz(project)).map(|f| f * GHZ);
+    let typed = chosen.band_ghz.map(|band| band.map(|f| f * GHZ));
+    let band = typed.unwrap_or_else(|| SolveSettings::usual_band(project));
     let stop = match chosen.stop {
         Stop::Decayed => StopRule::Decay { db: chosen.decay_db },
-        Stop::Settled => StopRule::Settled { tolerance: TOLERANCE },
+        Stop::Settled => StopRule::SETTLED,
     };
     let settings = SolveSettings { stop, longest: chosen.longest_ns * 1e-9, ..SolveSettings::new(mesh, band) };
     SolveRequest::new(project.clone(), chosen.shape, settings)
 }
 
-/// A third below to a third above the resonance of an ideal cavity under the patch, GHz, to a hundredth.
-pub(super) fn usual_band_ghz(project: &Project) -> [f64; 2] {
-    let params = project.antenna.to_params();
-    let cavity = C0 / (2.0 * params.length * params.substrate.eps_r.sqrt());
-    [2.0 / 3.0, 4.0 / 3.0].map(|part| (part * cavity / GHZ * 100.0).round() / 100.0)
-}
-
 /// What a run is called: its shape, and the density where it is not the usual one.
-fn name(request: &SolveRequest) -> String {
-    let project = &request.project;
+fn name(job: &Job) -> String {
+    let project = job.project();
     let active: Vec<&PresetSpec> = project.presets.iter().filter(|p| p.enabled).map(|p| &p.preset).collect();
     let bend = match active[..] {
         [PresetSpec::Bend { plane, radius_mm, .. }] if project.hand_edits.is_empty() => {
@@ -251,7 +285,7 @@ fn name(request: &SolveRequest) -> String {
         }
         _ => None,
     };
-    let shape = match (request.shape, bend) {
+    let shape = match (job.shape(), bend) {
         (Shape::Flat, _) => "Flat".to_owned(),
         (Shape::Cylinder, bend) => format!("Cylinder {}", bend.unwrap_or_default()),
         (Shape::Deformed, bend) => {
@@ -263,7 +297,7 @@ fn name(request: &SolveRequest) -> String {
             format!("{}, {how}", bend.unwrap_or_else(|| "Deformed".to_owned()))
         }
     };
-    match request.settings.mesh.density {
+    match job.settings().mesh.density {
         Density::Default => shape,
         other => format!("{shape}, {}", density_text(other).0.to_lowercase()),
     }
@@ -277,7 +311,7 @@ mod tests {
     #[test]
     fn a_run_is_named_after_what_was_solved() {
         let chosen = SolveUi::default();
-        let of = |project: &Project, chosen: &SolveUi| name(&request(project, chosen));
+        let of = |project: &Project, chosen: &SolveUi| name(&request(project, chosen).job());
         let mut project = first_project();
         assert_eq!(of(&project, &chosen), "R 10 H, raw", "one bend");
         assert_eq!(of(&project, &SolveUi { shape: Shape::Cylinder, ..chosen.clone() }), "Cylinder R 10 H", "exact");
@@ -286,11 +320,5 @@ mod tests {
         let coarse = SolveUi { density: Density::Coarse, ..chosen };
         assert_eq!(of(&project, &coarse), "Deformed, isometric, coarse", "moved by hand");
         assert_eq!(of(&project, &SolveUi { shape: Shape::Flat, ..coarse }), "Flat, coarse", "flat");
-    }
-
-    #[test]
-    fn the_usual_band_lies_around_the_cavity() {
-        let [lo, hi] = usual_band_ghz(&first_project());
-        assert!((lo..hi).contains(&10.8) && hi / lo < 2.01, "{lo} to {hi} GHz");
     }
 }

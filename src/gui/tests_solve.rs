@@ -9,7 +9,7 @@ use super::solve_session::request;
 use super::tests::{Window, has_adapter, lay_out, project, settle, window};
 use super::ui_state::{Curve, Polarization, ResultTab, RightTab, SolveUi};
 use crate::pipeline::solve_job::RunResult;
-use crate::pipeline::{Density, Shape};
+use crate::pipeline::{Density, RunFigures, Shape};
 use crate::project::Edit;
 use crate::results::{FarField, FittedResonance, Powers, Sweep, frequencies};
 use crate::units::{ETA0, GHZ};
@@ -31,15 +31,18 @@ fn made_up(freq: f64) -> RunResult {
     RunResult {
         resonance: sweep.resonance(),
         fitted: Some(FittedResonance { freq: 1.001 * freq, freq_error: 1e6, q: 12.3, q_error: 0.1 }),
-        is_settled: true,
         sweep,
-        port_impedance: 49.87,
-        n_tets: 12_345,
-        n_steps: 6789,
-        dt: 1.7e-13,
-        residual_db: -40.3,
-        speed: 5e7,
-        seconds: 4.2,
+        figures: RunFigures {
+            port_impedance_ohm: 49.87,
+            tets: 12_345,
+            clipped_cells: 12,
+            dt_s: 1.7e-13,
+            steps: 6789,
+            residual_db: -40.3,
+            is_settled: true,
+            tet_steps_per_second: 5e7,
+            seconds: 4.2,
+        },
         patterns: vec![lobe(freq).into()],
     }
 }
@@ -82,7 +85,7 @@ fn solved() -> Window {
 fn add(window: &mut Window, shape: Shape, freq: f64) {
     let chosen = SolveUi { shape, ..SolveUi::default() };
     let request = request(&project(window), &chosen);
-    window.state_mut().solve.add(request, made_up(freq));
+    window.state_mut().solve.add(request.job(), made_up(freq));
 }
 
 fn run(window: &mut Window, command: Command) {
@@ -111,22 +114,13 @@ fn the_launcher_solves_shows_the_curve_as_it_comes_and_keeps_old_results_when_ca
     window.get_by_label_contains("There are no results yet");
     window.get_by_label_contains(" cells, ");
     let chosen = &mut window.state_mut().state.solve;
-    (chosen.shape, chosen.density, chosen.longest_ns) = (Shape::Flat, Density::Coarse, 1.0);
+    // A wide band has a short pulse.
+    (chosen.shape, chosen.density, chosen.band_ghz) = (Shape::Flat, Density::Coarse, Some([8.0, 20.0]));
+    chosen.longest_ns = 0.8;
     window.key_press(Key::F5);
     window.step();
     assert!(window.state().solve.is_busy() && window.state().state.solve.shows_results, "it began");
     assert!(!window.state().session.is_busy(), "the deforming thread has nothing to do with it");
-    until(&mut window, "an end", |app| !app.solve.is_busy());
-    window.run_steps(2);
-    let (runs, project) = (window.state().solve.runs().to_vec(), project(&window));
-    assert_eq!((runs.len(), &runs[0].request.project), (1, &project), "a result of this project");
-    let found = runs[0].result.resonance.expect("a resonance");
-    assert!((10.0..11.8).contains(&(found.freq / GHZ)) && found.depth_db < -3.0, "{found:?}");
-    assert!(window.state().messages.texts().any(|m| m.starts_with("Solved:")), "and it was said");
-    // Again, without an end.
-    let chosen = &mut window.state_mut().state.solve;
-    (chosen.longest_ns, chosen.decay_db) = (1000.0, 100.0);
-    run(&mut window, Command::Solve);
     until(&mut window, "a live curve", |app| app.solve.live().is_some_and(|live| live.sweep.is_some()));
     window.get_by_label_contains("under way");
     window.get_by_label_contains(" left · step ");
@@ -134,12 +128,22 @@ fn the_launcher_solves_shows_the_curve_as_it_comes_and_keeps_old_results_when_ca
     window.run_steps(2);
     let solve = &window.state().solve;
     assert!(!solve.is_busy() && solve.live().is_none() && solve.error().is_none(), "idle");
-    assert_eq!(solve.runs()[0].serial, runs[0].serial, "the earlier result is still there");
     window.get_by_label("Resume").click();
-    until(&mut window, "it goes on", |app| app.solve.live().is_some_and(|live| live.n_done > 1000));
-    run(&mut window, Command::ShowResults);
+    until(&mut window, "an end", |app| !app.solve.is_busy() && app.solve.interrupted().is_none());
+    let (runs, project) = (window.state().solve.runs().to_vec(), project(&window));
+    assert!(runs.len() == 1 && !runs[0].is_stale(&project), "a result of this project");
+    let result = &runs[0].result;
+    let found = result.resonance.expect("a resonance");
+    assert!((10.0..11.8).contains(&(found.freq / GHZ)) && found.depth_db < -3.0, "{found:?}");
+    let broadside = result.patterns.iter().map(|pattern| pattern.field.boresight());
+    assert!(result.patterns.len() > 20 && broadside.fold(f64::NEG_INFINITY, f64::max) > 5.0, "patterns");
+    assert!(window.state().messages.texts().any(|m| m.starts_with("Solved:")), "and it was said");
+    // Again, called off before the field runs.
+    run(&mut window, Command::Solve);
     window.get_by_label("Cancel").click();
     window.run_steps(2);
+    assert!(!window.state().solve.is_busy() && window.query_by_label("Resume").is_none(), "nothing to go on with");
+    assert_eq!(window.state().solve.runs()[0].serial, runs[0].serial, "the earlier result is still there");
     // A run that cannot be.
     window.state_mut().edit("hand edits", Edit::MoveVertices(vec![(3, [0.0, 0.0, 0.2])]));
     settle(&mut window);
@@ -198,7 +202,7 @@ fn the_same_request_replaces_its_result_and_another_gets_a_name_of_its_own() {
     window.state_mut().state.solve.band_ghz = Some([9.0, 12.0]);
     let other =
         request(&project(&window), &SolveUi { band_ghz: Some([9.0, 12.0]), shape: Shape::Flat, ..SolveUi::default() });
-    window.state_mut().solve.add(other, made_up(10.8 * GHZ));
+    window.state_mut().solve.add(other.job(), made_up(10.8 * GHZ));
     assert_eq!(window.state().solve.runs()[2].name, "Flat (2)", "over another band");
 }
 
@@ -268,6 +272,41 @@ fn the_pattern_is_drawn_around_the_antenna() {
     assert!((greatest - scalars.range[1]).abs() < 0.05, "the scale ends at the greatest directivity");
     let n = surface.positions.len() as u32;
     assert!(surface.parts[0].triangles.iter().flatten().all(|&v| v < n), "valid triangles");
+}
+
+#[test]
+fn results_are_kept_beside_the_project_and_shown_when_it_is_opened_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("bent.json");
+    let mut window = solved();
+    let before = window.state().solve.runs().to_vec();
+    let ctx = window.ctx.clone();
+    let carry_out = |window: &mut Window, action| {
+        window.state_mut().carry_out(&ctx, action);
+        window.run_steps(2);
+    };
+    carry_out(&mut window, Action::SavePath(path.clone()));
+    run(&mut window, Command::New);
+    assert!(window.state().solve.runs().is_empty(), "another project");
+    carry_out(&mut window, Action::OpenPath(path.clone()));
+    for run in &before {
+        let back = window.state().solve.runs().iter().find(|r| r.name == run.name).expect("there again");
+        assert!(back.is_shown && back.result.sweep == run.result.sweep, "{}: its curve is shown", run.name);
+        assert!(back.result.figures == run.result.figures && back.result.patterns.is_empty(), "{}", run.name);
+    }
+    // The file is changed by something else: only the flat antenna's result is of it.
+    let mut changed = project(&window);
+    changed.presets.clear();
+    crate::project::file::write(&path, &changed).expect("writable");
+    carry_out(&mut window, Action::OpenPath(path.clone()));
+    window.get_by_role_and_label(Role::CheckBox, "⚠ R 10 H, raw");
+    let shown: Vec<&str> = window.state().solve.shown().map(|run| run.name.as_str()).collect();
+    assert_eq!(shown, ["Flat"], "what is out of date is not shown");
+    let dir = crate::pipeline::results_dir(&path);
+    std::fs::write(dir.join("0.json"), "{}").expect("writable");
+    carry_out(&mut window, Action::OpenPath(path));
+    assert!(window.state().messages.texts().any(|m| m.contains("0.json")), "what cannot be read is said");
+    assert_eq!(window.state().solve.runs().len(), 2, "and does not matter to the others");
 }
 
 #[test]

@@ -169,9 +169,15 @@ mod tests {
     }
 
     #[test]
+    fn the_usual_band_lies_around_the_cavity() {
+        let [lo, hi] = SolveSettings::usual_band(&crate::project::Project::default());
+        assert!((lo..hi).contains(&10.8e9) && (hi / lo - 2.0).abs() < 1e-12, "{lo} to {hi} Hz");
+    }
+
+    #[test]
     fn settled_stops_well_before_the_decay_and_at_the_same_resonance() {
         let (n_decay, at_decay) = stopped(StopRule::Decay { db: 40.0 });
-        let (n_settled, at_settled) = stopped(StopRule::Settled { tolerance: 5e-4 });
+        let (n_settled, at_settled) = stopped(StopRule::SETTLED);
         assert!(n_settled < n_decay * 3 / 4, "{n_settled} of {n_decay} steps");
         assert!((at_settled / at_decay - 1.0).abs() < 5e-4, "{at_settled:e} {at_decay:e}");
         assert!((at_settled / 11e9 - 1.0).abs() < 0.005, "{at_settled:e}");

@@ -11,7 +11,7 @@ use crate::task::Task;
 use crate::tlm::{
     Checkpoint, FieldRecorder, Huygens, Network, NetworkSettings, Pulse, Record, Run, StepLimit, TlmError,
 };
-use crate::units::from_mm;
+use crate::units::{C0, from_mm};
 use serde::{Deserialize, Serialize};
 use std::time::{Duration, Instant};
 
@@ -44,6 +44,14 @@ impl SolveSettings {
         let pattern_freqs = frequencies(lo, hi, (hi - lo) / (N_PATTERNS - 1.0));
         Self { mesh, band, stop: StopRule::Decay { db: 40.0 }, longest: 4e-9, pattern_freqs, edge_correction: true }
     }
+
+    /// From a third below to a third above the resonance of an ideal cavity under the patch, Hz.
+    #[must_use]
+    pub fn usual_band(project: &Project) -> [f64; 2] {
+        let params = project.antenna.to_params();
+        let cavity = C0 / (2.0 * params.length * params.substrate.eps_r.sqrt());
+        [cavity * 2.0 / 3.0, cavity * 4.0 / 3.0]
+    }
 }
 
 /// When a run stops.
@@ -60,6 +68,12 @@ pub enum StopRule {
         /// Greatest difference of its frequency, relative; ten times as much is allowed to |S11| itself.
         tolerance: f64,
     },
+}
+
+impl StopRule {
+    /// The usual tolerance of a settled resonance. Ten times as much already cuts coarse runs off before weak modes
+    /// show; a tenth waits longer than the decay by 40 dB does.
+    pub const SETTLED: Self = Self::Settled { tolerance: 5e-4 };
 }
 
 /// A solved antenna.

@@ -3,11 +3,13 @@
 //! While the field runs, about once a second S11 of the record so far can be had ([`LiveRun`]), with the time left.
 
 use super::job::{Job, Work};
-use super::{PipelineError, Shape, SolveSettings, Solved, solve};
+use super::stored;
+use super::{PipelineError, RunFigures, Shape, SolveSettings, Solved, Stored, solve};
 use crate::project::Project;
 use crate::results::{Cut, CutPlane, FarField, FittedResonance, Resonance, Sweep};
 use crate::task::Task;
 use crate::tlm::Checkpoint;
+use rayon::prelude::*;
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
@@ -35,6 +37,12 @@ impl SolveRequest {
     #[must_use]
     pub fn is_same(&self, other: &Self) -> bool {
         (&self.project, self.shape, &self.settings) == (&other.project, other.shape, &other.settings)
+    }
+
+    /// What the result is kept as.
+    #[must_use]
+    pub fn job(&self) -> stored::Job {
+        stored::Job::new(&self.project, self.shape, &self.settings)
     }
 
     fn state(&self) -> MutexGuard<'_, Option<Checkpoint>> {
@@ -69,24 +77,18 @@ pub struct RunResult {
     pub resonance: Option<Resonance>,
     /// The strongest resonance by fit to the late record.
     pub fitted: Option<FittedResonance>,
-    /// Whether the stop rule was met; else the run ended at its longest.
-    pub is_settled: bool,
-    /// The port's impedance as meshed, ohm.
-    pub port_impedance: f64,
-    /// Number of cells.
-    pub n_tets: usize,
-    /// Steps done.
-    pub n_steps: usize,
-    /// Time step, s.
-    pub dt: f64,
-    /// How far the reflected voltage had fallen, dB (negative).
-    pub residual_db: f64,
-    /// Cells times steps per second.
-    pub speed: f64,
-    /// Time spent, s.
-    pub seconds: f64,
-    /// Far fields, by ascending frequency.
+    /// Figures of the run.
+    pub figures: RunFigures,
+    /// Far fields, by ascending frequency; none of a result that was kept in a file.
     pub patterns: Vec<Pattern>,
+}
+
+impl RunResult {
+    /// As it is kept in a file: without its far fields.
+    #[must_use]
+    pub fn stored(&self, job: stored::Job) -> Stored {
+        Stored::new(job, &self.sweep, self.fitted, self.figures)
+    }
 }
 
 impl From<Solved> for RunResult {
@@ -94,15 +96,21 @@ impl From<Solved> for RunResult {
         Self {
             resonance: solved.sweep.resonance(),
             fitted: solved.fitted,
-            is_settled: solved.is_settled,
+            figures: RunFigures::of(&solved),
             sweep: solved.sweep,
-            port_impedance: solved.port_impedance,
-            n_tets: solved.meshed.mesh.tets.len(),
-            n_steps: solved.record.total.len(),
-            dt: solved.record.dt,
-            residual_db: solved.residual_db,
-            speed: solved.speed,
-            seconds: solved.seconds,
+            patterns: solved.far_fields.into_par_iter().map(Pattern::from).collect(),
+        }
+    }
+}
+
+impl From<&Stored> for RunResult {
+    fn from(stored: &Stored) -> Self {
+        let sweep = stored.sweep();
+        Self {
+            resonance: sweep.resonance(),
+            fitted: stored.fitted,
+            figures: stored.figures,
+            sweep,
             patterns: Vec::new(),
         }
     }
@@ -158,7 +166,13 @@ impl Work for SolveRequest {
             shown = Some(Instant::now());
         };
         let before = self.state().take();
-        Ok(solve(&self.project, self.shape, &self.settings, before.as_ref(), &mut watch, task)?.into())
+        let solved = solve(&self.project, self.shape, &self.settings, before.as_ref(), &mut watch, task);
+        if solved.is_err() {
+            // Called off before the field went on: nothing is lost.
+            let mut state = self.state();
+            *state = state.take().or(before);
+        }
+        Ok(solved?.into())
     }
 }
 
@@ -172,8 +186,10 @@ mod tests {
     #[test]
     fn a_run_shows_its_curve_and_a_cancelled_one_is_not_answered() {
         let mesh = MeshSettings { density: Density::Coarse, ..MeshSettings::default() };
-        let usual = SolveSettings::new(mesh, [8.0 * GHZ, 13.0 * GHZ]);
-        let settings = SolveSettings { longest: 1e-6, stop: StopRule::Decay { db: 200.0 }, ..usual };
+        // A wide band has a short pulse.
+        let usual = SolveSettings::new(mesh, [8.0 * GHZ, 20.0 * GHZ]);
+        let endless = StopRule::Decay { db: 200.0 };
+        let settings = SolveSettings { longest: 1e-6, stop: endless, pattern_freqs: vec![11.0 * GHZ], ..usual };
         let request = SolveRequest::new(Project::default(), Shape::Flat, settings.clone());
         let mut job = SolveJob::spawn(|| ());
         job.request(request.clone());
@@ -189,9 +205,19 @@ mod tests {
         assert!(sweep.s11.iter().all(|s| s.norm().is_finite()), "numbers");
         job.cancel();
         assert!(!job.is_busy() && job.live().is_none(), "idle at once");
-        job.request(SolveRequest::new(Project::default(), Shape::Cylinder, settings));
+        let impossible = SolveRequest::new(Project::default(), Shape::Cylinder, settings);
+        job.request(impossible.clone());
         assert_eq!(answer(&mut job).result.unwrap_err(), PipelineError::NoCylinder.into(), "the next one is answered");
-        let n_before = request.state().as_ref().map(|state| state.record.total.len()).expect("it left its state");
+        let n_kept = || request.state().as_ref().map(|state| state.record.total.len()).expect("it left its state");
+        let n_before = n_kept();
+        // Called off again before the field goes on.
+        job.request(request.clone());
+        while job.progress().is_none() {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        job.cancel();
+        job.request(impossible);
+        assert!(answer(&mut job).result.is_err() && n_kept() == n_before, "nothing is lost");
         job.request(request.clone());
         let n_after = loop {
             assert!(start.elapsed() < Duration::from_secs(300), "it does not go on");

@@ -15,6 +15,7 @@ use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 /// The tag of a result's file.
 const FORMAT: &str = "conformant-result";
@@ -37,6 +38,30 @@ impl Job {
     #[must_use]
     pub fn new(project: &Project, shape: Shape, settings: &SolveSettings) -> Self {
         Self { project: relevant(project, shape), shape, settings: settings.clone(), solver_version: SOLVER_VERSION }
+    }
+
+    /// The project, with what does not matter to the shape at its default.
+    #[must_use]
+    pub fn project(&self) -> &Project {
+        &self.project
+    }
+
+    /// Which of its shapes.
+    #[must_use]
+    pub fn shape(&self) -> Shape {
+        self.shape
+    }
+
+    /// How it is solved.
+    #[must_use]
+    pub fn settings(&self) -> &SolveSettings {
+        &self.settings
+    }
+
+    /// Whether solving a project as this job says would be another job by now.
+    #[must_use]
+    pub fn is_stale(&self, project: &Project) -> bool {
+        *self != Self::new(project, self.shape, &self.settings)
     }
 
     /// SHA-256 of the job, hexadecimal.
@@ -130,29 +155,37 @@ pub struct RunFigures {
     pub seconds: f64,
 }
 
+impl RunFigures {
+    /// The figures of a solved antenna.
+    #[must_use]
+    pub fn of(solved: &Solved) -> Self {
+        Self {
+            port_impedance_ohm: solved.port_impedance,
+            tets: solved.meshed.mesh.tets.len(),
+            clipped_cells: solved.n_clipped,
+            dt_s: solved.record.dt,
+            steps: solved.record.total.len(),
+            residual_db: solved.residual_db,
+            is_settled: solved.is_settled,
+            tet_steps_per_second: solved.speed,
+            seconds: solved.seconds,
+        }
+    }
+}
+
 impl Stored {
     /// A result to be kept.
     #[must_use]
-    pub fn new(job: Job, solved: &Solved) -> Self {
-        let Sweep { freqs, s11, reference } = &solved.sweep;
+    pub fn new(job: Job, sweep: &Sweep, fitted: Option<FittedResonance>, figures: RunFigures) -> Self {
+        let Sweep { freqs, s11, reference } = sweep;
         Self {
             job,
             freqs_hz: freqs.clone(),
             s11_re: s11.iter().map(|s| s.re).collect(),
             s11_im: s11.iter().map(|s| s.im).collect(),
             reference_ohm: *reference,
-            fitted: solved.fitted,
-            figures: RunFigures {
-                port_impedance_ohm: solved.port_impedance,
-                tets: solved.meshed.mesh.tets.len(),
-                clipped_cells: solved.n_clipped,
-                dt_s: solved.record.dt,
-                steps: solved.record.total.len(),
-                residual_db: solved.residual_db,
-                is_settled: solved.is_settled,
-                tet_steps_per_second: solved.speed,
-                seconds: solved.seconds,
-            },
+            fitted,
+            figures,
         }
     }
 
@@ -188,11 +221,31 @@ impl Stored {
         if !path.exists() {
             return Ok(None);
         }
-        let stored: Self = document::read(&path, FORMAT, VERSION)?;
-        // A file that was renamed, or series cut by hand, is no result of this job.
+        // A file that was renamed is no result of this job.
+        Ok(Self::read(&path)?.filter(|stored| stored.job == *job))
+    }
+
+    /// The results that a folder holds, oldest first, but the newest `n` at most; what cannot be read with its reason.
+    #[must_use]
+    pub fn newest(dir: &Path, n: usize) -> Vec<Result<Self, IoError>> {
+        let Ok(entries) = std::fs::read_dir(dir) else { return Vec::new() };
+        let mut files: Vec<(SystemTime, PathBuf)> = entries
+            .filter_map(|entry| {
+                let entry = entry.ok()?;
+                Some((entry.metadata().ok()?.modified().ok()?, entry.path()))
+            })
+            .filter(|(_, path)| path.extension().is_some_and(|ending| ending == "json"))
+            .collect();
+        files.sort();
+        let newest = files.split_off(files.len().saturating_sub(n));
+        newest.iter().filter_map(|(_, path)| Self::read(path).transpose()).collect()
+    }
+
+    /// A result's file; `None` where its series were cut by hand.
+    fn read(path: &Path) -> Result<Option<Self>, IoError> {
+        let stored: Self = document::read(path, FORMAT, VERSION)?;
         let n = stored.freqs_hz.len();
-        let is_whole = stored.s11_re.len() == n && stored.s11_im.len() == n;
-        Ok(Some(stored).filter(|stored| stored.job == *job && is_whole))
+        Ok(Some(stored).filter(|stored| stored.s11_re.len() == n && stored.s11_im.len() == n))
     }
 }
 
@@ -233,6 +286,9 @@ mod tests {
         for (n, (change, expected)) in changes.into_iter().enumerate() {
             for (shape, expected) in [Shape::Deformed, Shape::Flat, Shape::Cylinder].into_iter().zip(expected) {
                 assert_eq!(key(shape, change) != key(shape, |_| ()), expected, "change {n}, {shape:?}");
+                let mut changed = bent();
+                change(&mut changed);
+                assert_eq!(Job::new(&bent(), shape, &settings()).is_stale(&changed), expected, "{n}, {shape:?}");
             }
         }
         let wl = |orders| {
@@ -275,12 +331,18 @@ mod tests {
         assert_eq!(Stored::find(&job, folder.path()).unwrap(), None, "nothing yet");
         let path = stored(job.clone()).save(folder.path()).unwrap();
         assert_eq!(Stored::find(&job, folder.path()).unwrap(), Some(stored(job.clone())), "as kept");
+        let newest = Stored::newest(folder.path(), 8);
+        assert!(matches!(&newest[..], [Ok(found)] if *found == stored(job.clone())), "without its job");
+        assert!(Stored::newest(folder.path(), 0).is_empty(), "no more than asked for");
+        assert!(Stored::newest(&folder.path().join("nothing"), 8).is_empty(), "no folder");
         let other = Job::new(&bent(), Shape::Flat, &settings());
         std::fs::rename(&path, other.result_path(folder.path())).unwrap();
         assert_eq!(Stored::find(&other, folder.path()).unwrap(), None, "renamed by hand");
         std::fs::write(&path, r#"{"format": "conformant-result", "version": 1, "content": {"a": 1}}"#).unwrap();
         let message = Stored::find(&job, folder.path()).unwrap_err().to_string();
         assert!(message.contains("unknown field `a`"), "{message}");
+        let newest = Stored::newest(folder.path(), 8);
+        assert!(matches!(newest[..], [Err(_), Ok(_)] | [Ok(_), Err(_)]), "why one cannot be read");
         assert_eq!(results_dir(Path::new("x/antenna.json")), Path::new("x/antenna.results"), "beside the project");
     }
 }
