@@ -16,7 +16,7 @@
 //! The surface's power and the far field's come from the same currents by different ways; they differ by what the mesh
 //! makes of the wave outside.
 //!
-//! Sources: \[BAL16\] sections 12.2, 12.3 (N and L); \[CHE01\] chapter 3 (number of waves).
+//! Sources: \[BAL16\] sections 12.2, 12.3 (N and L); \[CHE01\] (number of waves).
 
 use super::far_field::{FarField, Powers};
 use super::s_params::transform;
