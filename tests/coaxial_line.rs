@@ -6,7 +6,7 @@ use conformant::io::checkpoint;
 use conformant::results::{FeedLine, Sweep, frequencies, sweep};
 use conformant::task::Task;
 use conformant::tet::{FaceGroup, FaceRole, SizingSettings, Surface, SurfaceFacet, TetMesh, fill};
-use conformant::tlm::{Network, NetworkSettings, Pulse, Run, StepLimit, TlmError};
+use conformant::tlm::{Loads, Network, NetworkSettings, Pulse, Resistor, Run, StepLimit, TlmError};
 use conformant::units::{C0, ETA0};
 use nalgebra::Complex;
 use std::f64::consts::{PI, TAU};
@@ -72,10 +72,14 @@ fn line(n: usize, layers: usize, n_z: usize, far_end: FaceRole) -> TetMesh {
     mesh
 }
 
-/// Runs the line for a band around 10 GHz; S11 at the port, and the port's impedance.
+/// Runs the line for a band around 10 GHz; S11 at a distance from the port, and the port's impedance.
 fn reflection(mesh: &TetMesh, distance: f64, step: StepLimit) -> (Sweep, f64) {
-    let network =
-        Network::<f32>::new(mesh, &NetworkSettings { step, ..NetworkSettings::new(10e9) }, &Task::default()).unwrap();
+    loaded(mesh, distance, step, Loads::default())
+}
+
+fn loaded(mesh: &TetMesh, distance: f64, step: StepLimit, loads: Loads) -> (Sweep, f64) {
+    let settings = NetworkSettings { step, loads, ..NetworkSettings::new(10e9) };
+    let network = Network::<f32>::new(mesh, &settings, &Task::default()).unwrap();
     let pulse = Pulse::new(5e9, 15e9).unwrap();
     let mut run = Run::new(&network, pulse);
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some thousand steps")]
@@ -123,6 +127,58 @@ fn a_shorted_end_reflects_everything_with_the_lines_delay() {
         let mean: Complex<f64> = sweep.s11.iter().sum::<Complex<f64>>() / sweep.s11.len() as f64;
         println!("{step:?}: mean S11 at the short {mean:.5}");
     }
+}
+
+/// Greatest distance of S11 from a number.
+fn distance_from(sweep: &Sweep, expected: f64) -> f64 {
+    sweep.s11.iter().map(|s| (s - expected).norm()).fold(0.0, f64::max)
+}
+
+#[test]
+fn lossy_sheets_and_resistors_end_the_line_as_theory_says() {
+    let mesh = line(24, 3, 12, FaceRole::Conductor);
+    let end = |loads| loaded(&mesh, LENGTH, StepLimit::Clip(0.003), loads).0;
+    let wave = ETA0 / EPS_R.sqrt();
+    // The mesh's dispersion turns the reflection by some hundredths on its way there and back.
+    for (resistance, expected, allowed) in [(wave, 0.0, 0.01), (2.0 * wave, 1.0 / 3.0, 0.03), (1e9, 1.0, 0.08)] {
+        let sheets = vec![("end".to_owned(), resistance)];
+        let off = distance_from(&end(Loads { sheets, ..Loads::default() }), expected);
+        assert!(off < allowed, "{resistance} ohm per square: {off} from {expected}");
+    }
+    // Resistors along all edges of the open end make it a short.
+    let of_end = mesh.faces.iter().filter(|f| f.group == FAR_END).flat_map(|f| {
+        let [a, b, c] = f.vertices;
+        [[a, b], [b, c], [c, a]].map(|[p, q]| [p.min(q), p.max(q)])
+    });
+    let edges: std::collections::BTreeSet<[VertexId; 2]> = of_end.collect();
+    let resistors = edges.into_iter().map(|edge| Resistor { edge, resistance: 1e-3 }).collect();
+    let short = Loads { sheets: vec![("end".to_owned(), 1e9)], resistors, ..Loads::default() };
+    let off = distance_from(&end(short), -1.0);
+    assert!(off < 0.08, "shorted by resistors: {off} from -1");
+}
+
+#[test]
+fn a_permeable_line_has_its_impedance_and_is_matched_by_its_wave() {
+    const MU_R: f64 = 1.5;
+    let mesh = line(24, 3, 12, FaceRole::Outer);
+    let permeable = vec![(RegionId::new(1), MU_R)];
+    let (sweep, impedance) = loaded(&mesh, 0.0, StepLimit::Exact, Loads { permeable, ..Loads::default() });
+    let error = impedance / (exact_impedance() * MU_R.sqrt()) - 1.0;
+    assert!(error.abs() < 0.02, "impedance {impedance}, {error} off");
+    let off = distance_from(&sweep, 0.0);
+    assert!(off < 0.02, "reflects {off}");
+}
+
+#[test]
+fn loads_that_cannot_be_are_refused() {
+    let mesh = line(16, 2, 4, FaceRole::Conductor);
+    let refused = |loads| {
+        let settings = NetworkSettings { loads, ..NetworkSettings::new(10e9) };
+        Network::<f32>::new(&mesh, &settings, &Task::default()).unwrap_err().to_string()
+    };
+    let sheet = |name: &str, ohm| Loads { sheets: vec![(name.to_owned(), ohm)], ..Loads::default() };
+    assert!(refused(sheet("felt", 1.0)).contains("\"felt\""), "a sheet that is not there is named");
+    assert!(refused(sheet("end", -1.0)).contains("-1"), "a sheet that gives power is refused");
 }
 
 #[test]

@@ -35,7 +35,7 @@ struct BoundaryFaces {
     /// The port, if the mesh has one.
     port: Option<Port>,
     outer: HashSet<[VertexId; 3]>,
-    /// Conductance of faces of lossy sheets, in units of the free-space admittance.
+    /// Conductance of faces of lossy sheets for each cell at the face, in units of the free-space admittance.
     sheets: HashMap<[VertexId; 3], f64>,
 }
 
@@ -63,11 +63,17 @@ impl BoundaryFaces {
         let conductors = || mesh.faces.iter().filter(|f| mesh.groups[f.group].role == FaceRole::Conductor);
         let perfect = conductors().filter(|f| resistance(f.group).is_none());
         let lossy = conductors().filter_map(|f| Some((face_key(f.vertices), ETA0 / resistance(f.group)?)));
+        let mut sheets: HashMap<[VertexId; 3], f64> = lossy.collect();
+        let is_sheet = |face: &[VertexId; 3]| sheets.contains_key(face);
+        let mut n_cells: HashMap<[VertexId; 3], f64> = HashMap::new();
+        let faces = mesh.tets.iter().filter(|_| !sheets.is_empty()).flat_map(|t| (0..4).map(|i| face_key(t.face(i))));
+        faces.filter(is_sheet).for_each(|face| *n_cells.entry(face).or_default() += 1.0);
+        sheets.iter_mut().for_each(|(face, conductance)| *conductance /= n_cells[face]);
         Ok(Self {
             conducting: perfect.flat_map(|f| edges_of(face_key(f.vertices))).collect(),
             port: Port::new(mesh, loads)?,
             outer: faces_with(mesh, FaceRole::Outer).collect(),
-            sheets: lossy.collect(),
+            sheets,
         })
     }
 
@@ -199,8 +205,7 @@ impl<'a> Assembly<'a> {
             if self.faces.outer.contains(&face) {
                 add(&(mass() * (self.mesh.regions[region.index()].eps_r / self.loads.mu_r(region)).sqrt()));
             } else if let Some(&sheet) = self.faces.sheets.get(&face) {
-                // Half of it for the cell on each side.
-                add(&(mass() * (sheet / 2.0)));
+                add(&(mass() * sheet));
             } else if let Some((port, f)) = self.faces.port_face(face, region.index()) {
                 add(&port.faces[f].conductance);
                 for (a, &place) in places.iter().enumerate() {
@@ -223,7 +228,7 @@ impl<'a> Assembly<'a> {
         }
         let mut loss = self.cell(k).capacitance * conductivity;
         for (places, face) in sheets {
-            let mass = face_mass(face.map(|v| self.mesh.vertices[v.index()])).0 * (self.faces.sheets[&face] / 2.0);
+            let mass = face_mass(face.map(|v| self.mesh.vertices[v.index()])).0 * self.faces.sheets[&face];
             for (a, b) in (0..3).flat_map(|a| (0..3).map(move |b| (a, b))) {
                 loss[(places[a], places[b])] += mass[(a, b)];
             }
