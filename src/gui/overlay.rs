@@ -54,14 +54,18 @@ pub(super) fn draw(ui: &Ui, rect: Rect, view: &View, state: &UiState, range: Opt
     }
 }
 
-/// Draws the scale of a pattern, dBi from `ends`, beside another scale if there is one.
-pub(super) fn pattern(ui: &Ui, rect: Rect, freq: f64, [low, high]: [f32; 2], is_second: bool) {
-    let tick = |k: u8| format!("{:.1}", high + (low - high) * f32::from(k) / 4.0);
+/// Draws the scale of the pattern of a run, dBi from `ends`, beside another scale if there is one.
+pub(super) fn pattern(ui: &Ui, rect: Rect, (run, freq): (&str, f64), [low, high]: [f32; 2], is_second: bool) {
+    // Adding zero turns -0 round.
+    let tick = |k: u8| format!("{:.1}", ((high + (low - high) * f32::from(k) / 4.0) * 10.0).round() / 10.0 + 0.0);
     let title = format!("Directivity (dBi), {}", super::polar::freq_text(freq));
     let scale = ColorBar { map: ColorMap::Viridis, title: &title, ticks: [0, 1, 2, 3, 4].map(tick) };
     let shift = if is_second { 130.0 } else { 0.0 };
     let painter = ui.painter().with_clip_rect(rect);
-    scale.draw(&painter, rect.with_max_x(rect.right() - shift), Tokens::here(ui));
+    let tokens = Tokens::here(ui);
+    scale.draw(&painter, rect.with_max_x(rect.right() - shift), tokens);
+    let place = rect.min + vec2(MARGIN, MARGIN + 20.0);
+    lettering(&painter, place, Align2::LEFT_TOP, format!("Pattern of {run}"), tokens.weak, tokens);
 }
 
 /// Draws what a picture of a mesh needs: a legend or a scale, and whether the mesh is out of date.

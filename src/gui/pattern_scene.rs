@@ -1,7 +1,7 @@
 //! The radiation pattern as a surface around the antenna: radius and colour by directivity.
 
 use super::polar;
-use super::solve_session::SolveSession;
+use super::solve_session::{FinishedRun, SolveSession};
 use super::ui_state::SolveUi;
 use crate::pipeline::solve_job::Pattern;
 use crate::render::{Array, ColorMap, Paint, Part, Scalars, Surface, Vec3};
@@ -25,8 +25,8 @@ pub(super) struct PatternScene {
 impl PatternScene {
     /// The pattern of the newest run on show that has one, around an antenna in the box from `lo` to `hi`, mm.
     pub(super) fn surface(&mut self, solve: &SolveSession, chosen: &SolveUi, [lo, hi]: [Vec3; 2]) -> Option<Surface> {
-        let (serial, pattern) = pattern(solve, chosen)?;
-        let key = (serial, pattern.field.freq.to_bits(), chosen.range_db.to_bits(), [lo, hi]);
+        let (run, pattern) = pattern(solve, chosen)?;
+        let key = (run.serial, pattern.field.freq.to_bits(), chosen.range_db.to_bits(), [lo, hi]);
         if self.made.as_ref().is_none_or(|(made, _)| *made != key) {
             let radius = REACH * (hi - lo).length() / 2.0;
             self.made = Some((key, around((lo + hi) / 2.0, radius, pattern, chosen.range_db)));
@@ -35,10 +35,10 @@ impl PatternScene {
     }
 }
 
-/// Number and pattern of the newest run on show that has one at the frequency on show.
-pub(super) fn pattern<'a>(solve: &'a SolveSession, chosen: &SolveUi) -> Option<(u64, &'a Pattern)> {
+/// The newest run on show that has a pattern at the frequency on show, with it.
+pub(super) fn pattern<'a>(solve: &'a SolveSession, chosen: &SolveUi) -> Option<(&'a FinishedRun, &'a Pattern)> {
     let freq = polar::frequency(solve, chosen)?;
-    solve.shown().rev().find_map(|run| Some((run.serial, polar::pattern(run, freq)?)))
+    solve.shown().filter_map(|run| Some((run, polar::pattern(run, freq)?))).max_by_key(|(run, _)| run.serial)
 }
 
 /// Ends of the scale of colours, dBi.

@@ -324,9 +324,9 @@ impl Viewport {
         name_vertices(ui, response, frame, state, &view);
         let range = self.builder.range(state).filter(|_| frame.mesh.is_none());
         overlay::draw(ui, frame.rect, &view, state, range);
-        if let Some((_, pattern)) = frame.solve.and_then(|solve| pattern_scene::pattern(solve, &state.solve)) {
+        if let Some((run, pattern)) = frame.solve.and_then(|solve| pattern_scene::pattern(solve, &state.solve)) {
             let ends = pattern_scene::range(pattern, state.solve.range_db);
-            overlay::pattern(ui, frame.rect, pattern.field.freq, ends, range.is_some());
+            overlay::pattern(ui, frame.rect, (&run.name, pattern.field.freq), ends, range.is_some());
         }
         if let Some(mesh) = frame.mesh {
             let is_stale = mesh.is_stale(frame.session.project());
