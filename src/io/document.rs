@@ -7,7 +7,7 @@ use super::error::{ParseError, Place, read as read_bytes};
 use super::{IoError, write_atomic};
 use serde::de::{DeserializeOwned, IgnoredAny};
 use serde::{Deserialize, Serialize};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 #[derive(Deserialize)]
 struct Header {
@@ -61,6 +61,19 @@ pub fn read<T: DeserializeOwned>(path: &Path, format: &str, version: u32) -> Res
     }
     let document: Document<T> = serde_json::from_slice(&text).map_err(|error| ParseError::json(&error).at(path))?;
     Ok(document.content)
+}
+
+/// The JSON files of a folder, oldest first; none where it cannot be read.
+#[must_use]
+pub fn by_age(dir: &Path) -> Vec<PathBuf> {
+    let Ok(entries) = std::fs::read_dir(dir) else { return Vec::new() };
+    let dated = entries.filter_map(|entry| {
+        let entry = entry.ok()?;
+        Some((entry.metadata().ok()?.modified().ok()?, entry.path()))
+    });
+    let mut files: Vec<_> = dated.filter(|(_, path)| path.extension().is_some_and(|ending| ending == "json")).collect();
+    files.sort();
+    files.into_iter().map(|(_, path)| path).collect()
 }
 
 #[cfg(test)]

@@ -15,7 +15,6 @@ use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
-use std::time::SystemTime;
 
 /// The tag of a result's file.
 const FORMAT: &str = "conformant-result";
@@ -228,17 +227,9 @@ impl Stored {
     /// The results that a folder holds, oldest first, but the newest `n` at most; what cannot be read with its reason.
     #[must_use]
     pub fn newest(dir: &Path, n: usize) -> Vec<Result<Self, IoError>> {
-        let Ok(entries) = std::fs::read_dir(dir) else { return Vec::new() };
-        let mut files: Vec<(SystemTime, PathBuf)> = entries
-            .filter_map(|entry| {
-                let entry = entry.ok()?;
-                Some((entry.metadata().ok()?.modified().ok()?, entry.path()))
-            })
-            .filter(|(_, path)| path.extension().is_some_and(|ending| ending == "json"))
-            .collect();
-        files.sort();
-        let newest = files.split_off(files.len().saturating_sub(n));
-        newest.iter().filter_map(|(_, path)| Self::read(path).transpose()).collect()
+        let files = document::by_age(dir);
+        let newest = &files[files.len().saturating_sub(n)..];
+        newest.iter().filter_map(|path| Self::read(path).transpose()).collect()
     }
 
     /// A result's file; `None` where its series were cut by hand.
