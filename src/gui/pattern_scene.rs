@@ -38,7 +38,7 @@ impl PatternScene {
 /// The newest run on show that has a pattern at the frequency on show, with it.
 pub(super) fn pattern<'a>(solve: &'a SolveSession, chosen: &SolveUi) -> Option<(&'a FinishedRun, &'a Pattern)> {
     let freq = polar::frequency(solve, chosen)?;
-    solve.shown().rev().find_map(|run| Some((run, polar::pattern(run, freq)?)))
+    solve.shown().filter_map(|run| Some((run, polar::pattern(run, freq)?))).max_by_key(|(run, _)| run.serial)
 }
 
 /// Ends of the scale of colours, dBi.

@@ -187,7 +187,7 @@ mod tests {
     fn a_run_shows_its_curve_and_a_cancelled_one_is_not_answered() {
         let mesh = MeshSettings { density: Density::Coarse, ..MeshSettings::default() };
         // A wide band has a short pulse.
-        let usual = SolveSettings::new(mesh, [8.0 * GHZ, 20.0 * GHZ]);
+        let usual = SolveSettings::new(mesh, [8.0 * GHZ, 40.0 * GHZ]);
         let endless = StopRule::Decay { db: 200.0 };
         let settings = SolveSettings { longest: 1e-6, stop: endless, pattern_freqs: vec![11.0 * GHZ], ..usual };
         let request = SolveRequest::new(Project::default(), Shape::Flat, settings.clone());
