@@ -113,6 +113,15 @@ impl Port {
     }
 }
 
+/// Adds a face's matrix to that of its cell's ports.
+///
+/// * `places`: of the face's edges among the ports.
+fn add_face(to: &mut Matrix6<f64>, places: [usize; 3], matrix: &Matrix3<f64>) {
+    for (a, b) in (0..3).flat_map(|a| (0..3).map(move |b| (a, b))) {
+        to[(places[a], places[b])] += matrix[(a, b)];
+    }
+}
+
 /// The four faces of ascending corners with the places of their edges among the six.
 fn faces_of(c: [VertexId; 4]) -> [([usize; 3], [VertexId; 3]); 4] {
     [
@@ -191,21 +200,26 @@ impl<'a> Assembly<'a> {
         Cell::new(points, eps_r, mu_r, self.free(corners, tet))
     }
 
+    fn face_mass(&self, face: [VertexId; 3]) -> Matrix3<f64> {
+        face_mass(face.map(|v| self.mesh.vertices[v.index()])).0
+    }
+
+    /// Conductivity over permittivity of a cell's material, 1/m.
+    fn conductivity(&self, tet: usize) -> f64 {
+        TAU * self.loss_freq / C0 * self.mesh.regions[self.region(tet)].tan_delta
+    }
+
     /// What boundary faces add to a cell: conductances of its ports, and how the port drives and reads them.
     fn boundary_terms(&self, corners: [VertexId; 4], tet: usize) -> (Matrix6<f64>, [f64; 6], [f64; 6]) {
         let (mut conductance, mut source, mut observation) = (Matrix6::zeros(), [0.0; 6], [0.0; 6]);
         let region = self.mesh.tets[tet].region;
         for (places, face) in faces_of(corners) {
-            let mut add = |matrix: &Matrix3<f64>| {
-                for (a, b) in (0..3).flat_map(|a| (0..3).map(move |b| (a, b))) {
-                    conductance[(places[a], places[b])] += matrix[(a, b)];
-                }
-            };
-            let mass = || face_mass(face.map(|v| self.mesh.vertices[v.index()])).0;
+            let mut add = |matrix: &Matrix3<f64>| add_face(&mut conductance, places, matrix);
             if self.faces.outer.contains(&face) {
-                add(&(mass() * (self.mesh.regions[region.index()].eps_r / self.loads.mu_r(region)).sqrt()));
+                add(&(self.face_mass(face)
+                    * (self.mesh.regions[region.index()].eps_r / self.loads.mu_r(region)).sqrt()));
             } else if let Some(&sheet) = self.faces.sheets.get(&face) {
-                add(&(mass() * sheet));
+                add(&(self.face_mass(face) * sheet));
             } else if let Some((port, f)) = self.faces.port_face(face, region.index()) {
                 add(&port.faces[f].conductance);
                 for (a, &place) in places.iter().enumerate() {
@@ -221,17 +235,14 @@ impl<'a> Assembly<'a> {
     /// outside and does not count.
     pub(super) fn dissipation(&self, k: usize) -> Option<Matrix6<f64>> {
         let (corners, tet) = self.cells[k];
-        let conductivity = TAU * self.loss_freq / C0 * self.mesh.regions[self.region(tet)].tan_delta;
+        let conductivity = self.conductivity(tet);
         let sheets: Vec<_> = faces_of(corners).into_iter().filter(|(_, f)| self.faces.sheets.contains_key(f)).collect();
         if conductivity <= 0.0 && sheets.is_empty() {
             return None;
         }
         let mut loss = self.cell(k).capacitance * conductivity;
         for (places, face) in sheets {
-            let mass = face_mass(face.map(|v| self.mesh.vertices[v.index()])).0 * self.faces.sheets[&face];
-            for (a, b) in (0..3).flat_map(|a| (0..3).map(move |b| (a, b))) {
-                loss[(places[a], places[b])] += mass[(a, b)];
-            }
+            add_face(&mut loss, places, &(self.face_mass(face) * self.faces.sheets[&face]));
         }
         Some(loss)
     }
@@ -241,12 +252,14 @@ impl<'a> Assembly<'a> {
         let (corners, tet) = self.cells[k];
         let cell = self.cell(k);
         let absorbed = self.absorber.map_or(0.0, |a| a.rate(center(self.mesh, tet)) * x);
-        // Conductivity over permittivity, as a share of C/x.
-        let kappa = TAU * self.loss_freq / C0 * self.mesh.regions[self.region(tet)].tan_delta * x + absorbed;
+        // As a share of C/x.
+        let kappa = self.conductivity(tet) * x + absorbed;
         let mut loss = cell.capacitance * (kappa / x);
         let mut lane = LaneTerms { coefficients: [0.0; 35], boundary: [0.0; 33] };
-        let (faces, source, observation) = self.boundary_terms(corners, tet);
+        let (mut source, mut observation) = ([0.0; 6], [0.0; 6]);
         if at_boundary {
+            let faces;
+            (faces, source, observation) = self.boundary_terms(corners, tet);
             loss += faces;
         } else {
             lane.coefficients[LOSS] = kappa / (1.0 + kappa);

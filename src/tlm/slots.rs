@@ -124,20 +124,20 @@ impl Slots {
         let lanes = self.cells.par_chunks(LANES).zip(self.edges.par_chunks(LANES)).enumerate();
         let blocks = lanes.map(|(b, (cells, edges))| {
             let mut block = Block { coefficients: [[T::default(); LANES]; 35], edges: [[0; LANES]; 6] };
-            let mut boundary = Boundary { terms: [[T::default(); LANES]; 33] };
+            let mut boundary = (b >= self.n_inner_blocks).then(|| Boundary { terms: [[T::default(); LANES]; 33] });
             for (w, (cell, ports)) in cells.iter().zip(edges).enumerate() {
                 (0..6).for_each(|e| block.edges[e][w] = ports[e]);
                 if let Some(k) = *cell {
-                    let terms = assembly.terms(k, x, b >= self.n_inner_blocks);
+                    let terms = assembly.terms(k, x, boundary.is_some());
                     block.coefficients.iter_mut().zip(terms.coefficients).for_each(|(lane, c)| lane[w] = T::new(c));
-                    boundary.terms.iter_mut().zip(terms.boundary).for_each(|(lane, c)| lane[w] = T::new(c));
+                    let lanes = boundary.iter_mut().flat_map(|b| &mut b.terms);
+                    lanes.zip(terms.boundary).for_each(|(lane, c)| lane[w] = T::new(c));
                 }
             }
             (block, boundary)
         });
-        let all: Vec<(Block<T>, Boundary<T>)> = blocks.collect();
-        let boundary = all[self.n_inner_blocks..].iter().map(|(_, boundary)| boundary.clone()).collect();
-        (all.into_iter().map(|(block, _)| block).collect(), boundary)
+        let (blocks, boundary): (Vec<Block<T>>, Vec<Option<Boundary<T>>>) = blocks.unzip();
+        (blocks, boundary.into_iter().flatten().collect())
     }
 
     /// For each edge its ports' places in the state, and `2 / (sum Y + conductance of resistors)`.
