@@ -182,6 +182,20 @@ pub struct MeshArgs {
     pub(super) json: bool,
 }
 
+/// How an antenna is solved.
+#[derive(Debug, Args)]
+pub(super) struct RunArgs {
+    /// How fine a mesh is
+    #[arg(long, default_value = "default")]
+    pub(super) density: DensityChoice,
+    /// Lower and upper end of the band, GHz [default: two thirds to four thirds of the patch's cavity resonance]
+    #[arg(long, value_names = ["LO", "HI"], num_args = 2)]
+    pub(super) band: Option<Vec<f64>>,
+    /// When a run stops
+    #[arg(long, default_value = "decay")]
+    pub(super) stop: StopChoice,
+}
+
 /// Arguments of `solve`.
 #[derive(Debug, Args)]
 pub struct SolveArgs {
@@ -190,15 +204,8 @@ pub struct SolveArgs {
     /// Which of the project's shapes
     #[arg(long, default_value = "deformed")]
     pub(super) shape: ExportShape,
-    /// How fine the mesh is
-    #[arg(long, default_value = "default")]
-    pub(super) density: DensityChoice,
-    /// Lower and upper end of the band, GHz [default: two thirds to four thirds of the patch's cavity resonance]
-    #[arg(long, value_names = ["LO", "HI"], num_args = 2)]
-    pub(super) band: Option<Vec<f64>>,
-    /// When the run stops
-    #[arg(long, default_value = "decay")]
-    pub(super) stop: StopChoice,
+    #[command(flatten)]
+    pub(super) run: RunArgs,
     /// Leave the cells at the edges of sheets as they are: resonances come out too low, by some percent at coarse edges
     #[arg(long)]
     pub(super) no_edge_correction: bool,
@@ -233,15 +240,8 @@ pub struct CompareArgs {
     /// Folder for table, Touchstone files and plots; made where it is missing
     #[arg(long, value_name = "DIR")]
     pub(super) out: PathBuf,
-    /// How fine the meshes are
-    #[arg(long, default_value = "default")]
-    pub(super) density: DensityChoice,
-    /// Lower and upper end of the band, GHz [default: two thirds to four thirds of the patch's cavity resonance]
-    #[arg(long, value_names = ["LO", "HI"], num_args = 2)]
-    pub(super) band: Option<Vec<f64>>,
-    /// When each run stops
-    #[arg(long, default_value = "decay")]
-    pub(super) stop: StopChoice,
+    #[command(flatten)]
+    pub(super) run: RunArgs,
     /// Print JSON
     #[arg(long)]
     pub(super) json: bool,

@@ -1,6 +1,6 @@
 //! Runs of the solver as the command line does them: with checkpoints, and results kept beside the project.
 
-use super::args::StopChoice;
+use super::args::{RunArgs, StopChoice};
 use crate::io::{IoError, checkpoint};
 use crate::pipeline::{
     self, Job, MeshSettings, PipelineError, RunFigures, Running, Shape, SolveSettings, Solved, StopRule, Stored,
@@ -33,19 +33,14 @@ pub(super) enum Resume {
     Must,
 }
 
-/// Settings from what was typed; the band is in GHz.
-pub(super) fn settings(
-    project: &Project,
-    density: pipeline::Density,
-    band_ghz: Option<&[f64]>,
-    stop: StopChoice,
-) -> SolveSettings {
-    let band = match band_ghz {
+/// Settings from what was typed.
+pub(super) fn settings(project: &Project, args: &RunArgs) -> SolveSettings {
+    let band = match args.band.as_deref() {
         Some(&[lo, hi]) => [lo * GHZ, hi * GHZ],
         _ => SolveSettings::usual_band(project),
     };
-    let mut settings = SolveSettings::new(MeshSettings { density, metal: Metal::Sheet }, band);
-    if stop == StopChoice::Settled {
+    let mut settings = SolveSettings::new(MeshSettings { density: args.density.into(), metal: Metal::Sheet }, band);
+    if args.stop == StopChoice::Settled {
         settings.stop = StopRule::SETTLED;
     }
     settings

@@ -18,7 +18,7 @@ use std::time::Duration;
 
 pub(super) fn run(args: &SolveArgs, task: &Task) -> Result<()> {
     let project = file::read(&args.file)?;
-    let mut settings = runs::settings(&project, args.density.into(), args.band.as_deref(), args.stop);
+    let mut settings = runs::settings(&project, &args.run);
     settings.edge_correction = !args.no_edge_correction;
     if !args.pattern_ghz.is_empty() {
         settings.pattern_freqs = pattern_freqs(&args.pattern_ghz, settings.band)?;

@@ -57,7 +57,7 @@ fn found_or_solved(
     dir: &Path,
     task: &Task,
 ) -> Result<Result<Stored, String>> {
-    let settings = runs::settings(&variant.project, args.density.into(), args.band.as_deref(), args.stop);
+    let settings = runs::settings(&variant.project, &args.run);
     if let Some(stored) = Stored::find(&Job::new(&variant.project, variant.shape, &settings), dir)? {
         return Ok(Ok(stored));
     }
