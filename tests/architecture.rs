@@ -4,6 +4,23 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
+/// What the two edges of the program, command line and window, may name.
+const EDGE: &[&str] = &[
+    "antenna",
+    "cage",
+    "deform",
+    "distortion",
+    "geometry",
+    "io",
+    "pipeline",
+    "project",
+    "render",
+    "results",
+    "task",
+    "tet",
+    "units",
+];
+
 /// Each module with the modules of this crate that it may name.
 const LAYERS: &[(&str, &[&str])] = &[
     ("units", &[]),
@@ -36,42 +53,8 @@ const LAYERS: &[(&str, &[&str])] = &[
             "units",
         ],
     ),
-    (
-        "cli",
-        &[
-            "antenna",
-            "cage",
-            "deform",
-            "distortion",
-            "geometry",
-            "io",
-            "pipeline",
-            "project",
-            "render",
-            "results",
-            "task",
-            "tet",
-            "units",
-        ],
-    ),
-    (
-        "gui",
-        &[
-            "antenna",
-            "cage",
-            "deform",
-            "distortion",
-            "geometry",
-            "io",
-            "pipeline",
-            "project",
-            "render",
-            "results",
-            "task",
-            "tet",
-            "units",
-        ],
-    ),
+    ("cli", EDGE),
+    ("gui", EDGE),
     ("main", &["cli", "gui"]),
     ("lib", &[]),
 ];

@@ -147,7 +147,7 @@ impl Command {
             Self::Orthographic => ("Orthographic", "No perspective: equal lengths look equal"),
             Self::ShowCage => ("Cage", "Show the cage and its vertices"),
             Self::SeeThrough => ("See-through substrate", "Show the pin and the ground through the substrate"),
-            Self::ShowLog => ("Messages", "Show the messages of this session"),
+            Self::ShowLog => ("Messages", "Show the messages since the program began"),
             Self::Theme(ThemePreference::System) => ("As the system", "Light or dark as the desktop is"),
             Self::Theme(ThemePreference::Light) => ("Light", "Dark lettering on a light ground"),
             Self::Theme(ThemePreference::Dark) => ("Dark", "Light lettering on a dark ground"),

@@ -1,5 +1,6 @@
-//! The status line, and the messages of this session.
+//! The status line, and the messages since the program began.
 
+use super::command::Command;
 use super::outbox::{Action, Outbox};
 use super::session::Session;
 use super::theme::Tokens;
@@ -74,7 +75,7 @@ impl Messages {
     pub(super) fn log(&self, ui: &mut Ui) {
         let tokens = Tokens::here(ui);
         if self.list.is_empty() {
-            ui.label(RichText::new("No messages in this session.").weak());
+            ui.label(RichText::new("No messages so far.").weak());
             return;
         }
         ScrollArea::vertical().stick_to_bottom(true).auto_shrink(false).show(ui, |ui| {
@@ -126,7 +127,7 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, messages: &Messages, state: &mu
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let count = messages.list.len();
             let text = if count == 1 { "1 message".to_owned() } else { format!("{count} messages") };
-            if ui.selectable_label(state.shows_log, text).on_hover_text("Show the messages of this session").clicked() {
+            if ui.selectable_label(state.shows_log, text).on_hover_text(Command::ShowLog.text_and_tip().1).clicked() {
                 state.shows_log = !state.shows_log;
             }
             if let Some(shown) = session.shown() {
