@@ -1,8 +1,8 @@
 //! Checkpoints of a field run: a binary file that is whole or refused.
 //!
 //! Little-endian: magic `CNFTLMCP`, version (u32), fingerprint of the run it belongs to (32 bytes), time step and seconds
-//! spent (f64), numbers of steps, of field values and of sums (u64), incident and total voltages (f64), sums (pairs of
-//! f64), field (f32), and the SHA-256 of everything before. Whether it fits a run is for [`Run::resumed`](crate::tlm::Run::resumed) to say.
+//! spent (f64), numbers of steps, of field values, of sums and of circuit states (u64), incident and total voltages (f64), sums (pairs of
+//! f64), states (f64), field (f32), and the SHA-256 of everything before. Whether it fits a run is for [`Run::resumed`](crate::tlm::Run::resumed) to say.
 
 use super::error::{ParseError, Place, read as read_bytes};
 use super::{IoError, write_atomic};
@@ -11,10 +11,10 @@ use sha2::{Digest, Sha256};
 use std::path::Path;
 
 /// The version that is written and read: a checkpoint is for the same program, soon.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 const MAGIC: &[u8; 8] = b"CNFTLMCP";
 /// Bytes before the series.
-const HEAD: usize = 8 + 4 + 32 + 5 * 8;
+const HEAD: usize = 8 + 4 + 32 + 6 * 8;
 /// Bytes of the SHA-256 at the end.
 const DIGEST: usize = 32;
 
@@ -23,8 +23,9 @@ const DIGEST: usize = 32;
 /// # Errors
 /// [`IoError::System`].
 pub fn write(checkpoint: &Checkpoint, path: &Path) -> Result<(), IoError> {
-    let Checkpoint { fingerprint, seconds, record, field, sums } = checkpoint;
-    let mut bytes = Vec::with_capacity(HEAD + 16 * (record.total.len() + sums.len()) + 4 * field.len() + DIGEST);
+    let Checkpoint { fingerprint, seconds, record, field, waves, sums } = checkpoint;
+    let n_numbers = 2 * (record.total.len() + sums.len()) + waves.len();
+    let mut bytes = Vec::with_capacity(HEAD + 8 * n_numbers + 4 * field.len() + DIGEST);
     bytes.extend(MAGIC);
     bytes.extend(VERSION.to_le_bytes());
     bytes.extend(fingerprint);
@@ -33,7 +34,9 @@ pub fn write(checkpoint: &Checkpoint, path: &Path) -> Result<(), IoError> {
     bytes.extend((record.total.len() as u64).to_le_bytes());
     bytes.extend((field.len() as u64).to_le_bytes());
     bytes.extend((sums.len() as u64).to_le_bytes());
-    record.incident.iter().chain(&record.total).chain(sums.as_flattened()).for_each(|v| bytes.extend(v.to_le_bytes()));
+    bytes.extend((waves.len() as u64).to_le_bytes());
+    let numbers = record.incident.iter().chain(&record.total).chain(sums.as_flattened()).chain(waves);
+    numbers.for_each(|v| bytes.extend(v.to_le_bytes()));
     field.iter().for_each(|v| bytes.extend(v.to_le_bytes()));
     let digest = Sha256::digest(&bytes);
     bytes.extend(digest);
@@ -67,18 +70,22 @@ fn parse(bytes: &[u8]) -> Result<Checkpoint, ParseError> {
     let mut number = || take(&mut rest).map(f64::from_le_bytes);
     let (dt, seconds) = number().zip(number()).ok_or_else(damaged)?;
     let mut count = || usize::try_from(u64::from_le_bytes(take(&mut rest)?)).ok();
-    let ((n_steps, n_field), n_sums) = count().zip(count()).zip(count()).ok_or_else(damaged)?;
-    let n_numbers = n_steps.checked_add(n_sums).and_then(|n| n.checked_mul(16));
+    let counts = count().zip(count()).zip(count().zip(count()));
+    let ((n_steps, n_field), (n_sums, n_waves)) = counts.ok_or_else(damaged)?;
+    let n_pairs = n_steps.checked_add(n_sums).and_then(|n| n.checked_mul(16));
+    let n_numbers = n_pairs.and_then(|n| n_waves.checked_mul(8)?.checked_add(n));
     let expected = n_numbers.and_then(|n| n_field.checked_mul(4)?.checked_add(n));
     let Some(numbers) = n_numbers.filter(|_| expected == Some(rest.len())) else { return Err(damaged()) };
     let (numbers, field) = rest.split_at(numbers);
     let mut incident: Vec<f64> = numbers.as_chunks().0.iter().map(|c| f64::from_le_bytes(*c)).collect();
+    let waves = incident.split_off(2 * (n_steps + n_sums));
     let sums = incident.split_off(2 * n_steps);
     let total = incident.split_off(n_steps);
     Ok(Checkpoint {
         fingerprint,
         seconds,
         record: Record { dt, incident, total },
+        waves,
         sums: sums.as_chunks().0.to_vec(),
         field: field.as_chunks().0.iter().map(|c| f32::from_le_bytes(*c)).collect(),
     })
@@ -103,6 +110,7 @@ mod tests {
             seconds: 1.25,
             record,
             field: vec![1.0, -2.5e-38, 3.0e7],
+            waves: vec![-0.5, 1e-3, 7.0],
             sums: vec![[1.5, -2.5]],
         }
     }

@@ -32,7 +32,7 @@ pub enum FaceRole {
     /// A port plane. The wave enters the region behind the face (`back`); what lies before it is a conducting cap, so
     /// the port's edges exist twice for the field: live behind, shorted before.
     Port,
-    /// The outer boundary, which absorbs.
+    /// The outer boundary, through which waves leave.
     Outer,
 }
 

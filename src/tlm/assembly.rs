@@ -1,15 +1,17 @@
 //! A mesh as the field sees it: cells in their final order, which ports are live, materials, boundaries, loads.
 
 use super::TlmError;
-use super::blocks::{A_INVERSE, ADMITTANCE, LOSS, MAGNETIC_LOSS, OBSERVATION, SOURCE, triangle};
+use super::blocks::{A_INVERSE, ADMITTANCE, LOSS, OBSERVATION, SOURCE, triangle};
 use super::cell::{Cell, EDGES, face_mass};
-use super::loads::{Absorber, Loads};
+use super::loads::Loads;
+use super::network::NetworkSettings;
+use super::outgoing::OuterSphere;
 use super::port::PortMode;
 use super::sheet_edge;
 use crate::geometry::{DVec3, VertexId};
 use crate::tet::{FaceRole, TetMesh, face_key};
 use crate::units::{C0, ETA0};
-use nalgebra::{Matrix3, Matrix6};
+use nalgebra::{DMatrix, Matrix3, Matrix6};
 use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
 use std::f64::consts::TAU;
@@ -19,11 +21,12 @@ pub(super) struct Assembly<'a> {
     mesh: &'a TetMesh,
     /// Cells: corners ascending, and the number in the mesh.
     pub(super) cells: Vec<([VertexId; 4], usize)>,
-    /// Cells before this one have no boundary face.
-    pub(super) n_inner: usize,
+    /// Cells before the first of these have no boundary face, those from the second on lie at the outer sphere.
+    pub(super) ends: [usize; 2],
+    /// The waves that leave there.
+    pub(super) sphere: Option<OuterSphere>,
     faces: BoundaryFaces,
     loads: Loads,
-    absorber: Option<Absorber>,
     /// Vertices at the edges of sheets, where the field is singular; empty without correction.
     rim: HashSet<VertexId>,
     loss_freq: f64,
@@ -77,10 +80,13 @@ impl BoundaryFaces {
         })
     }
 
-    fn is_boundary(&self, corners: [VertexId; 4], region: usize) -> bool {
-        faces_of(corners).into_iter().any(|(_, f)| {
-            self.outer.contains(&f) || self.sheets.contains_key(&f) || self.port_face(f, region).is_some()
-        })
+    /// Which part of the cells one belongs to: 0 without boundary faces, 2 at the outer boundary, 1 at another one.
+    fn part(&self, corners: [VertexId; 4], region: usize) -> u8 {
+        let faces = || faces_of(corners).into_iter().map(|(_, face)| face);
+        if faces().any(|f| self.outer.contains(&f)) {
+            return 2;
+        }
+        u8::from(faces().any(|f| self.sheets.contains_key(&f) || self.port_face(f, region).is_some()))
     }
 
     /// The port with the place of a face in it, if the face is one of its and the region lies behind it.
@@ -134,36 +140,38 @@ fn faces_of(c: [VertexId; 4]) -> [([usize; 3], [VertexId; 3]); 4] {
 
 /// The numbers of a cell's lane: coefficients, and terms of boundary faces where its block has such.
 pub(super) struct LaneTerms {
-    pub(super) coefficients: [f64; 35],
+    pub(super) coefficients: [f64; 34],
     pub(super) boundary: [f64; 33],
 }
 
 impl<'a> Assembly<'a> {
-    /// * `edge_correction`: whether cells at the edges of sheets are corrected for the singular field.
-    pub(super) fn new(
-        mesh: &'a TetMesh,
-        loads: &Loads,
-        edge_correction: bool,
-        loss_freq: f64,
-    ) -> Result<Self, TlmError> {
+    pub(super) fn new(mesh: &'a TetMesh, settings: &NetworkSettings) -> Result<Self, TlmError> {
+        let NetworkSettings { loads, edge_correction, loss_freq, wave_degrees, .. } = settings;
         let faces = BoundaryFaces::new(mesh, loads)?;
         let (lo, hi) =
             mesh.vertices.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), &p| (lo.min(p), hi.max(p)));
         let scale = 1023.0 / (hi - lo).max_element();
-        let mut keyed: Vec<(bool, u32, usize)> = (0..mesh.tets.len())
+        let mut keyed: Vec<(u8, u32, usize)> = (0..mesh.tets.len())
             .into_par_iter()
             .map(|t| {
                 let tet = &mesh.tets[t];
-                let is_boundary = faces.is_boundary(ascending(tet.vertices), tet.region.index());
-                (is_boundary, morton((center(mesh, t) - lo) * scale), t)
+                let part = faces.part(ascending(tet.vertices), tet.region.index());
+                (part, morton((center(mesh, t) - lo) * scale), t)
             })
             .collect();
         keyed.par_sort_unstable();
-        let n_inner = keyed.iter().take_while(|k| !k.0).count();
+        let ends = [1, 2].map(|part| keyed.partition_point(|k| k.0 < part));
         let cells = keyed.into_iter().map(|(_, _, t)| (ascending(mesh.tets[t].vertices), t)).collect();
-        let rim = if edge_correction { sheet_edge::rim(mesh) } else { HashSet::new() };
-        let absorber = loads.absorber.and_then(|thickness| Absorber::new(mesh, thickness));
-        Ok(Self { mesh, cells, n_inner, faces, loads: loads.clone(), absorber, rim, loss_freq })
+        let rim = if *edge_correction { sheet_edge::rim(mesh) } else { HashSet::new() };
+        let of_sphere: Vec<[VertexId; 3]> = faces_with(mesh, FaceRole::Outer).collect();
+        let is_air = |&(_, tet): &(_, usize)| {
+            let region = mesh.tets[tet].region;
+            (mesh.regions[region.index()].eps_r, loads.mu_r(region)) == (1.0, 1.0)
+        };
+        let cells: Vec<([VertexId; 4], usize)> = cells;
+        let sphere = OuterSphere::new(&of_sphere, &mesh.vertices, *wave_degrees);
+        let sphere = sphere.filter(|_| cells[ends[1]..].iter().all(is_air));
+        Ok(Self { mesh, cells, ends, sphere, faces, loads: loads.clone(), rim, loss_freq: *loss_freq })
     }
 
     /// The mode of the port, if there is one.
@@ -231,8 +239,20 @@ impl<'a> Assembly<'a> {
         (conductance, source, observation)
     }
 
-    /// Conductances of lossy material and sheets in a cell; `None` where nothing is lost. The absorber stands for the
-    /// outside and does not count.
+    /// What the waves at the outer sphere see of a cell's ports: `[6, n_waves]`.
+    pub(super) fn wave_forms(&self, sphere: &OuterSphere, k: usize) -> DMatrix<f64> {
+        let mut forms = DMatrix::zeros(6, sphere.n_waves());
+        for (places, face) in faces_of(self.cells[k].0) {
+            let of_face = sphere.form(&face).into_iter();
+            of_face.flat_map(|form| (0..3).map(move |a| (a, form.row(a)))).for_each(|(a, row)| {
+                let mut sum = forms.row_mut(places[a]);
+                sum += row;
+            });
+        }
+        forms
+    }
+
+    /// Conductances of lossy material and sheets in a cell; `None` where nothing is lost.
     pub(super) fn dissipation(&self, k: usize) -> Option<Matrix6<f64>> {
         let (corners, tet) = self.cells[k];
         let conductivity = self.conductivity(tet);
@@ -251,11 +271,10 @@ impl<'a> Assembly<'a> {
     pub(super) fn terms(&self, k: usize, x: f64, at_boundary: bool) -> LaneTerms {
         let (corners, tet) = self.cells[k];
         let cell = self.cell(k);
-        let absorbed = self.absorber.map_or(0.0, |a| a.rate(center(self.mesh, tet)) * x);
         // As a share of C/x.
-        let kappa = self.conductivity(tet) * x + absorbed;
+        let kappa = self.conductivity(tet) * x;
         let mut loss = cell.capacitance * (kappa / x);
-        let mut lane = LaneTerms { coefficients: [0.0; 35], boundary: [0.0; 33] };
+        let mut lane = LaneTerms { coefficients: [0.0; 34], boundary: [0.0; 33] };
         let (mut source, mut observation) = ([0.0; 6], [0.0; 6]);
         if at_boundary {
             let faces;
@@ -264,8 +283,7 @@ impl<'a> Assembly<'a> {
         } else {
             lane.coefficients[LOSS] = kappa / (1.0 + kappa);
         }
-        let c = cell.coefficients(x, &loss, absorbed);
-        lane.coefficients[MAGNETIC_LOSS] = absorbed / (1.0 + absorbed);
+        let c = cell.coefficients(x, &loss);
         for a in 0..6 {
             lane.coefficients[ADMITTANCE + a] = c.y[a];
             for b in 0..=a {

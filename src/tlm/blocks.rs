@@ -8,8 +8,7 @@
 //! ```
 //!
 //! G holds boundary faces and lossy material. Away from the boundary it is a share of `C/x + G = D^-1`, so that
-//! `G V = loss (J + K^T h)` costs one number per cell; likewise magnetic loss, a share of A, takes another share of
-//! `A h = 2 z - K W` from z.
+//! `G V = loss (J + K^T h)` costs one number per cell.
 
 #![allow(
     clippy::needless_range_loop,
@@ -29,16 +28,15 @@ pub(super) const fn triangle(a: usize, b: usize) -> usize {
     if a >= b { a * (a + 1) / 2 + b } else { b * (b + 1) / 2 + a }
 }
 
-/// Where the parts of [`Block::coefficients`] begin: D (21), A^-1 (6), Y (6), losses (2).
+/// Where the parts of [`Block::coefficients`] begin: D (21), A^-1 (6), Y (6), loss (1).
 pub(super) const A_INVERSE: usize = 21;
 pub(super) const ADMITTANCE: usize = 27;
 pub(super) const LOSS: usize = 33;
-pub(super) const MAGNETIC_LOSS: usize = 34;
 
 /// What does not change while the field runs.
 #[derive(Clone, Debug)]
 pub(super) struct Block<T> {
-    pub(super) coefficients: [Lane<T>; 35],
+    pub(super) coefficients: [Lane<T>; 34],
     /// Edge of each port; one past the last edge for dropped ports.
     pub(super) edges: [[u32; LANES]; 6],
 }
@@ -59,18 +57,54 @@ pub(super) const FLUX: usize = 6;
 /// The field of a block's cells, but for the reflected currents.
 pub(super) type State<T> = [Lane<T>; 9];
 
-/// Reflected port currents p of a block's cells: apart from the rest, since connecting reads nothing else.
-pub(super) type Reflected<T> = [Lane<T>; 6];
+/// A number for each port of a block's cells. The reflected currents p are such, apart from the rest of the field, since
+/// connecting reads nothing else.
+pub(super) type Ports<T> = [Lane<T>; 6];
+
+/// What drives the cells of neighboring blocks from outside.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Drive<'a, T> {
+    /// Their boundary faces.
+    pub(super) terms: &'a [Boundary<T>],
+    /// The driving signal of the port.
+    pub(super) signal: T,
+    /// For blocks at the outer sphere: the forms of the waves that leave there, as many for each block as there are
+    /// currents, and these currents.
+    pub(super) waves: Option<(&'a [Ports<T>], &'a [T])>,
+}
+
+impl<T: Real> Drive<'_, T> {
+    /// The currents into the ports of a block.
+    #[inline(always)]
+    fn source(&self, block: usize) -> Ports<T> {
+        let mut source = [[T::default(); LANES]; 6];
+        for e in 0..6 {
+            for w in 0..LANES {
+                source[e][w] = self.terms[block].terms[SOURCE + e][w] * self.signal;
+            }
+        }
+        if let Some((forms, currents)) = self.waves {
+            for (form, current) in forms[block * currents.len()..].iter().zip(currents) {
+                for e in 0..6 {
+                    for w in 0..LANES {
+                        source[e][w] = multiply_add::<T, false>(-form[e][w], *current, source[e][w]);
+                    }
+                }
+            }
+        }
+        source
+    }
+}
 
 /// One step of some neighboring blocks.
 pub(super) struct Scatter<'a, T> {
     pub(super) blocks: &'a [Block<T>],
     pub(super) states: &'a mut [State<T>],
-    pub(super) reflected: &'a mut [Reflected<T>],
+    pub(super) reflected: &'a mut [Ports<T>],
     /// Edge voltages, one more than there are edges: the last is zero.
     pub(super) voltages: &'a [T],
-    /// For blocks with boundary faces: their terms, and the driving signal.
-    pub(super) boundary: Option<(&'a [Boundary<T>], T)>,
+    /// For blocks with boundary faces.
+    pub(super) drive: Option<Drive<'a, T>>,
 }
 
 impl<T: Real> WithSimd for Scatter<'_, T> {
@@ -79,8 +113,7 @@ impl<T: Real> WithSimd for Scatter<'_, T> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _simd: S) -> f64 {
-        // Vector units multiply and add in one; without one that would be a call for every number.
-        if size_of::<S::f32s>() > size_of::<f32>() { self.run::<true>() } else { self.run::<false>() }
+        if fuses::<S>() { self.run::<true>() } else { self.run::<false>() }
     }
 }
 
@@ -90,11 +123,64 @@ impl<T: Real> Scatter<'_, T> {
         let mut observed = 0.0;
         let fields = self.states.iter_mut().zip(self.reflected);
         for (b, (block, (state, reflected))) in self.blocks.iter().zip(fields).enumerate() {
-            let boundary = self.boundary.map(|(terms, signal)| (&terms[b], signal));
-            observed += scatter::<T, FUSED>(block, state, reflected, self.voltages, boundary);
+            let source = self.drive.map(|drive| drive.source(b));
+            let solved = solve::<T, FUSED>(block, state, reflected, self.voltages, source.as_ref());
+            update::<T, FUSED>(block, state, reflected, &solved);
+            if let (Some(drive), Some(source)) = (self.drive, source) {
+                observed += add_boundary(&drive.terms[b].terms, state, &solved.v, &source);
+            }
         }
         observed
     }
+}
+
+/// What the waves at the outer sphere see before their own currents flow.
+pub(super) struct Observe<'a, T> {
+    pub(super) blocks: &'a [Block<T>],
+    pub(super) states: &'a [State<T>],
+    pub(super) reflected: &'a [Ports<T>],
+    pub(super) voltages: &'a [T],
+    /// Forms of the waves, `n_waves` for each block.
+    pub(super) forms: &'a [Ports<T>],
+    pub(super) n_waves: usize,
+}
+
+impl<T: Real> WithSimd for Observe<'_, T> {
+    /// By wave.
+    type Output = Vec<f64>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _simd: S) -> Vec<f64> {
+        if fuses::<S>() { self.run::<true>() } else { self.run::<false>() }
+    }
+}
+
+impl<T: Real> Observe<'_, T> {
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) -> Vec<f64> {
+        let mut sums = vec![0.0; self.n_waves];
+        let fields = self.states.iter().zip(self.reflected);
+        let forms = self.forms.chunks_exact(self.n_waves);
+        for ((block, (state, reflected)), forms) in self.blocks.iter().zip(fields).zip(forms) {
+            let v = solve::<T, FUSED>(block, state, reflected, self.voltages, None).v;
+            for (sum, form) in sums.iter_mut().zip(forms) {
+                let mut seen = [T::default(); LANES];
+                for e in 0..6 {
+                    for w in 0..LANES {
+                        seen[w] = multiply_add::<T, FUSED>(form[e][w], v[e][w], seen[w]);
+                    }
+                }
+                *sum += seen.iter().map(|x| x.to_f64()).sum::<f64>();
+            }
+        }
+        sums
+    }
+}
+
+/// Whether numbers are multiplied and added in one: vector units do; without one that would be a call for every number.
+#[inline(always)]
+fn fuses<S: Simd>() -> bool {
+    size_of::<S::f32s>() > size_of::<f32>()
 }
 
 /// `a b + c`
@@ -105,7 +191,7 @@ fn multiply_add<T: Real, const FUSED: bool>(a: T, b: T, c: T) -> T {
 
 /// `out += D in`
 #[inline(always)]
-fn add_product<T: Real, const FUSED: bool>(d: &[Lane<T>; 35], input: &[Lane<T>; 6], out: &mut [Lane<T>; 6]) {
+fn add_product<T: Real, const FUSED: bool>(d: &[Lane<T>; 34], input: &Ports<T>, out: &mut Ports<T>) {
     for a in 0..6 {
         for b in 0..6 {
             let (element, input) = (&d[triangle(a, b)], &input[b]);
@@ -118,7 +204,7 @@ fn add_product<T: Real, const FUSED: bool>(d: &[Lane<T>; 35], input: &[Lane<T>; 
 
 /// `K v`
 #[inline(always)]
-fn circulation<T: Real>(v: &[Lane<T>; 6]) -> [Lane<T>; 3] {
+fn circulation<T: Real>(v: &Ports<T>) -> [Lane<T>; 3] {
     let mut k = [[T::default(); LANES]; 3];
     for w in 0..LANES {
         k[0][w] = v[0][w] + v[3][w] - v[1][w];
@@ -130,7 +216,7 @@ fn circulation<T: Real>(v: &[Lane<T>; 6]) -> [Lane<T>; 3] {
 
 /// `K^T h`
 #[inline(always)]
-fn transposed_circulation<T: Real>(h: &[Lane<T>; 3]) -> [Lane<T>; 6] {
+fn transposed_circulation<T: Real>(h: &[Lane<T>; 3]) -> Ports<T> {
     let mut q = [[T::default(); LANES]; 6];
     for w in 0..LANES {
         let (h0, h1, h2) = (h[0][w], h[1][w], h[2][w]);
@@ -140,19 +226,29 @@ fn transposed_circulation<T: Real>(h: &[Lane<T>; 3]) -> [Lane<T>; 6] {
     q
 }
 
+/// The fields of a block's cells in the middle of a step.
+struct Solved<T> {
+    /// `i + p`, and T after it.
+    current: Ports<T>,
+    flux: Ports<T>,
+    /// J, V, and `K^T h`.
+    drive: Ports<T>,
+    v: Ports<T>,
+    q: Ports<T>,
+}
+
 #[inline(always)]
-fn scatter<T: Real, const FUSED: bool>(
+fn solve<T: Real, const FUSED: bool>(
     block: &Block<T>,
-    state: &mut State<T>,
-    reflected: &mut Reflected<T>,
+    state: &State<T>,
+    reflected: &Ports<T>,
     voltages: &[T],
-    boundary: Option<(&Boundary<T>, T)>,
-) -> f64 {
+    source: Option<&Ports<T>>,
+) -> Solved<T> {
     let c = &block.coefficients;
     let zero = T::default();
     let two = T::new(2.0);
-    let mut current = [[zero; LANES]; 6];
-    let mut drive = [[zero; LANES]; 6];
+    let (mut current, mut flux, mut drive) = ([[zero; LANES]; 6], [[zero; LANES]; 6], [[zero; LANES]; 6]);
     for e in 0..6 {
         let y = &c[ADMITTANCE + e];
         // Gathered by itself, so that the rest runs on whole lanes.
@@ -163,14 +259,14 @@ fn scatter<T: Real, const FUSED: bool>(
         for w in 0..LANES {
             let p = reflected[e][w];
             current[e][w] = y[w] * across[w] - p;
-            state[e][w] += current[e][w] - p;
-            drive[e][w] = two * state[e][w];
+            flux[e][w] = state[e][w] + (current[e][w] - p);
+            drive[e][w] = two * flux[e][w];
         }
     }
-    if let Some((boundary, signal)) = boundary {
+    if let Some(source) = source {
         for e in 0..6 {
             for w in 0..LANES {
-                drive[e][w] += boundary.terms[SOURCE + e][w] * signal;
+                drive[e][w] += source[e][w];
             }
         }
     }
@@ -193,27 +289,39 @@ fn scatter<T: Real, const FUSED: bool>(
     }
     let q = transposed_circulation(&h);
     add_product::<T, FUSED>(c, &q, &mut v);
+    Solved { current, flux, drive, v, q }
+}
+
+/// Takes over the fields, but for what the boundary adds.
+#[inline(always)]
+fn update<T: Real, const FUSED: bool>(
+    block: &Block<T>,
+    state: &mut State<T>,
+    reflected: &mut Ports<T>,
+    solved: &Solved<T>,
+) {
+    let c = &block.coefficients;
+    let Solved { current, flux, drive, v, q } = solved;
     for e in 0..6 {
         let (y, loss) = (&c[ADMITTANCE + e], &c[LOSS]);
         for w in 0..LANES {
             reflected[e][w] = multiply_add::<T, FUSED>(y[w], v[e][w], -current[e][w]);
             // Dropped ports have no admittance, and nothing must gather there.
-            let flux = state[e][w] + q[e][w] - loss[w] * (drive[e][w] + q[e][w]);
-            state[e][w] = if y[w] > zero { flux } else { zero };
+            let flux = flux[e][w] + q[e][w] - loss[w] * (drive[e][w] + q[e][w]);
+            state[e][w] = if y[w] > T::default() { flux } else { T::default() };
         }
     }
-    let k = circulation(&v);
+    let k = circulation(v);
     for i in 0..3 {
         for w in 0..LANES {
-            state[FLUX + i][w] -= k[i][w] + c[MAGNETIC_LOSS][w] * across[i][w];
+            state[FLUX + i][w] -= k[i][w];
         }
     }
-    boundary.map_or(0.0, |(boundary, signal)| add_boundary(&boundary.terms, state, &v, signal))
 }
 
 /// Adds `J_src - G V` to T; returns the observation of V.
 #[inline(always)]
-fn add_boundary<T: Real>(terms: &[Lane<T>; 33], state: &mut State<T>, v: &[Lane<T>; 6], signal: T) -> f64 {
+fn add_boundary<T: Real>(terms: &[Lane<T>; 33], state: &mut State<T>, v: &Ports<T>, source: &Ports<T>) -> f64 {
     let mut seen = [T::default(); LANES];
     for a in 0..6 {
         let mut sum = [T::default(); LANES];
@@ -223,7 +331,7 @@ fn add_boundary<T: Real>(terms: &[Lane<T>; 33], state: &mut State<T>, v: &[Lane<
             }
         }
         for w in 0..LANES {
-            state[a][w] += terms[SOURCE + a][w] * signal - sum[w];
+            state[a][w] += source[a][w] - sum[w];
             seen[w] += terms[OBSERVATION + a][w] * v[a][w];
         }
     }

@@ -12,15 +12,15 @@
 //! stability, cell by cell.
 
 use crate::geometry::DVec3;
-use nalgebra::{Cholesky, Matrix3, Matrix6, SMatrix};
+use nalgebra::{Cholesky, DMatrix, Matrix3, Matrix6, SMatrix};
 
 /// Ends of the six edges among the four vertices, which ascend by number.
 pub(super) const EDGES: [(usize, usize); 6] = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)];
 
-type Curl = SMatrix<f64, 3, 6>;
+pub(super) type Curl = SMatrix<f64, 3, 6>;
 
 /// Circulations of the faces 012, 013 and 023 (up to the sign that Q carries).
-fn circulations() -> Curl {
+pub(super) fn circulations() -> Curl {
     Curl::from_row_slice(&[1., -1., 0., 1., 0., 0., -1., 0., 1., 0., -1., 0., 0., 1., -1., 0., 0., 1.])
 }
 
@@ -120,8 +120,7 @@ impl Cell {
     /// The coefficients for half a time step x.
     ///
     /// * `loss`: conductance matrix of lossy material and boundary faces.
-    /// * `magnetic_loss`: magnetic conductance as a share of the lossless A, which is L/x up to terms in x.
-    pub(super) fn coefficients(&self, x: f64, loss: &Matrix6<f64>, magnetic_loss: f64) -> Coefficients {
+    pub(super) fn coefficients(&self, x: f64, loss: &Matrix6<f64>) -> Coefficients {
         let kept = |a: usize, b: usize| self.free[a] && self.free[b];
         let full = Matrix6::from_fn(|a, b| match kept(a, b) {
             true => self.capacitance[(a, b)] / x + loss[(a, b)],
@@ -129,9 +128,54 @@ impl Cell {
         });
         let inverse = full.try_inverse().expect("positive definite");
         let d = Matrix6::from_fn(|a, b| if kept(a, b) { inverse[(a, b)] } else { 0.0 });
-        let a = (self.stub(x) + self.curl * d * self.curl.transpose()) * (1.0 + magnetic_loss);
+        let a = self.stub(x) + self.curl * d * self.curl.transpose();
         let a_inverse = a.try_inverse().expect("positive definite");
         Coefficients { d, a_inverse, y: self.line.map(|line| line / x) }
+    }
+}
+
+/// Square root of a matrix that is positive semidefinite up to rounding; `None` if it is not.
+fn root<const N: usize>(m: SMatrix<f64, N, N>) -> Option<DMatrix<f64>> {
+    let mut eigen = DMatrix::from_fn(N, N, |i, j| m[(i, j)]).symmetric_eigen();
+    let scale = eigen.eigenvalues.amax();
+    if eigen.eigenvalues.min() < -1e-10 * scale {
+        return None;
+    }
+    eigen.eigenvalues.apply(|w| *w = w.max(0.0).sqrt());
+    Some(eigen.recompose())
+}
+
+impl Cell {
+    /// The scattering matrix of the energy-normalised states without losses, 15 x 15: ports, capacitive and inductive
+    /// stubs; `None` if a stub is negative.
+    fn scattering(&self, x: f64) -> Option<DMatrix<f64>> {
+        let c = self.coefficients(x, &Matrix6::zeros());
+        let stub = self.capacitance / x - Matrix6::from_diagonal(&nalgebra::Vector6::from_fn(|e, _| c.y[e]));
+        let (capacitive, inductive) = (root(stub)?, root(self.stub(x))?);
+        let d = DMatrix::from_fn(6, 6, |i, j| c.d[(i, j)]);
+        let a_inverse = DMatrix::from_fn(3, 3, |i, j| c.a_inverse[(i, j)]);
+        let curl = DMatrix::from_fn(3, 6, |i, j| self.curl[(i, j)]);
+        let mut j = DMatrix::zeros(6, 15);
+        for e in 0..6 {
+            j[(e, e)] = 2.0 * c.y[e].sqrt();
+        }
+        j.view_mut((0, 6), (6, 6)).copy_from(&(2.0 * &capacitive));
+        let mut h = -(&a_inverse * &curl * &d * &j);
+        let mut stub_part = h.view_mut((0, 12), (3, 3));
+        stub_part += 2.0 * &a_inverse * &inductive;
+        let v = &d * (&j + curl.transpose() * &h);
+        let mut s = DMatrix::zeros(15, 15);
+        for e in 0..6 {
+            s.row_mut(e).copy_from(&(v.row(e) * c.y[e].sqrt()));
+        }
+        s.view_mut((6, 0), (6, 15)).copy_from(&(capacitive * &v));
+        s.view_mut((12, 0), (3, 15)).copy_from(&(inductive * &h));
+        Some(s - DMatrix::identity(15, 15))
+    }
+
+    /// How far the scattering of the cell without losses is from orthogonal: infinitely if a stub is negative.
+    pub(super) fn orthogonality_error(&self, x: f64) -> f64 {
+        self.scattering(x).map_or(f64::INFINITY, |s| (&s * s.transpose() - DMatrix::identity(15, 15)).amax())
     }
 }
 
@@ -155,7 +199,6 @@ pub(super) fn face_mass(points: [DVec3; 3]) -> (Matrix3<f64>, [DVec3; 3], f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::{DMatrix, Matrix6 as M6};
 
     fn random_cell(rng: &mut fastrand::Rng, free: [bool; 6]) -> Cell {
         loop {
@@ -168,48 +211,12 @@ mod tests {
         }
     }
 
-    /// Square root of a matrix that is positive semidefinite up to rounding.
-    fn root<const N: usize>(m: SMatrix<f64, N, N>) -> DMatrix<f64> {
-        let mut eigen = DMatrix::from_fn(N, N, |i, j| m[(i, j)]).symmetric_eigen();
-        let scale = eigen.eigenvalues.amax();
-        assert!(eigen.eigenvalues.min() > -1e-10 * scale, "stubs are not negative: {}", eigen.eigenvalues);
-        eigen.eigenvalues.apply(|w| *w = w.max(0.0).sqrt());
-        eigen.recompose()
-    }
-
-    /// The scattering matrix of the energy-normalised states, 15 x 15.
-    fn scattering(cell: &Cell, x: f64) -> DMatrix<f64> {
-        let c = cell.coefficients(x, &M6::zeros(), 0.0);
-        let stub = cell.capacitance / x - M6::from_diagonal(&nalgebra::Vector6::from_fn(|e, _| c.y[e]));
-        let (capacitive, inductive) = (root(stub), root(cell.stub(x)));
-        let d = DMatrix::from_fn(6, 6, |i, j| c.d[(i, j)]);
-        let a_inverse = DMatrix::from_fn(3, 3, |i, j| c.a_inverse[(i, j)]);
-        let curl = DMatrix::from_fn(3, 6, |i, j| cell.curl[(i, j)]);
-        let mut j = DMatrix::zeros(6, 15);
-        for e in 0..6 {
-            j[(e, e)] = 2.0 * c.y[e].sqrt();
-        }
-        j.view_mut((0, 6), (6, 6)).copy_from(&(2.0 * &capacitive));
-        let mut h = -(&a_inverse * &curl * &d * &j);
-        let mut stub_part = h.view_mut((0, 12), (3, 3));
-        stub_part += 2.0 * &a_inverse * &inductive;
-        let v = &d * (&j + curl.transpose() * &h);
-        let mut s = DMatrix::zeros(15, 15);
-        for e in 0..6 {
-            s.row_mut(e).copy_from(&(v.row(e) * c.y[e].sqrt()));
-        }
-        s.view_mut((6, 0), (6, 15)).copy_from(&(capacitive * &v));
-        s.view_mut((12, 0), (3, 15)).copy_from(&(inductive * &h));
-        s - DMatrix::identity(15, 15)
-    }
-
     #[test]
     fn scattering_of_a_lossless_cell_is_orthogonal() {
         let mut rng = fastrand::Rng::with_seed(8);
         for n in 0..200 {
             let cell = random_cell(&mut rng, [true; 6]);
-            let s = scattering(&cell, cell.x_max * if n % 2 == 0 { 0.98 } else { 0.4 });
-            let error = (&s * s.transpose() - DMatrix::identity(15, 15)).amax();
+            let error = cell.orthogonality_error(cell.x_max * if n % 2 == 0 { 0.98 } else { 0.4 });
             assert!(error < 1e-12, "cell {n}: {error:e}");
         }
     }
@@ -219,8 +226,7 @@ mod tests {
         let mut rng = fastrand::Rng::with_seed(9);
         for _ in 0..50 {
             let cell = random_cell(&mut rng, [true; 6]);
-            let s = scattering(&cell, 2.0 * cell.x_max);
-            let error = (&s * s.transpose() - DMatrix::identity(15, 15)).amax();
+            let error = cell.orthogonality_error(2.0 * cell.x_max);
             assert!(error < 1e-10, "{error:e}");
         }
     }

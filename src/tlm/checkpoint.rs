@@ -16,6 +16,8 @@ pub struct Checkpoint {
     pub record: Record,
     /// State of all cells, their reflected currents, and the voltages of all edges, in the network's order.
     pub field: Vec<f32>,
+    /// States of the circuits at the outer sphere.
+    pub waves: Vec<f64>,
     /// Sums of the transforms gathered so far, real and imaginary part.
     pub sums: Vec<[f64; 2]>,
 }
@@ -33,6 +35,8 @@ impl Network<f32> {
         let mut lane = |lane: &Lane<f32>| hash.update(lane.map(f32::to_le_bytes).as_flattened());
         self.blocks.iter().flat_map(|b| &b.coefficients).for_each(&mut lane);
         self.boundary.iter().flat_map(|b| &b.terms).for_each(&mut lane);
+        let forms = self.outgoing.iter().flat_map(|outgoing| outgoing.forms.as_flattened());
+        forms.for_each(&mut lane);
         self.weights.iter().for_each(|weight| hash.update(weight.to_le_bytes()));
         for edges in self.blocks.iter().flat_map(|b| &b.edges) {
             hash.update(edges.map(u32::to_le_bytes).as_flattened());
@@ -56,6 +60,7 @@ impl Run<'_, f32> {
             seconds: self.seconds,
             record: self.record.clone(),
             field: cells.chain(reflected).chain(&self.voltages).copied().collect(),
+            waves: self.waves.clone(),
             sums: self.fields.iter().flat_map(|fields| &fields.sums).map(|sum| [sum.re, sum.im]).collect(),
         }
     }
@@ -70,6 +75,7 @@ impl Run<'_, f32> {
         let n_field = n_cells + n_reflected + self.voltages.len();
         let n_sums = self.fields.as_ref().map_or(0, |fields| fields.sums.len());
         let fits = checkpoint.field.len() == n_field && checkpoint.sums.len() == n_sums;
+        let fits = fits && checkpoint.waves.len() == self.waves.len();
         if checkpoint.fingerprint != self.fingerprint() || !fits {
             return Err(TlmError::ForeignCheckpoint);
         }
@@ -78,6 +84,7 @@ impl Run<'_, f32> {
         self.states.as_flattened_mut().as_flattened_mut().copy_from_slice(cells);
         self.reflected.as_flattened_mut().as_flattened_mut().copy_from_slice(reflected);
         self.voltages.copy_from_slice(voltages);
+        self.waves.copy_from_slice(&checkpoint.waves);
         let sums = self.fields.iter_mut().flat_map(|fields| &mut fields.sums);
         sums.zip(&checkpoint.sums).for_each(|(sum, [re, im])| (sum.re, sum.im) = (*re, *im));
         self.record = checkpoint.record.clone();

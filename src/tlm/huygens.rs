@@ -75,8 +75,8 @@ pub struct Huygens {
     pub(super) inside: Vec<bool>,
 }
 
-/// Where the sphere lies in the room between the antenna and the outer boundary: nearer to the antenna, so that the
-/// boundary may absorb in a layer, but some cells away from both at every density.
+/// Where the sphere lies in the room between the antenna and the outer boundary: some cells away from both at every
+/// density.
 const SHARE: f64 = 0.35;
 
 impl Huygens {

@@ -22,6 +22,7 @@ mod error;
 mod huygens;
 mod loads;
 mod network;
+mod outgoing;
 mod port;
 mod real;
 mod recorder;
@@ -36,11 +37,11 @@ pub use checkpoint::Checkpoint;
 pub use error::TlmError;
 pub use huygens::{ClosedSurface, Huygens};
 pub use loads::{Loads, Resistor};
-pub use network::{Network, NetworkSettings, StepLimit};
+pub use network::{Network, NetworkSettings, StepLimit, orthogonality_error};
 pub use real::Real;
 pub use recorder::{FieldRecorder, SurfaceField};
 pub use run::{Record, Run};
 pub use source::Pulse;
 
 /// Goes up when the same mesh and settings give another result, so that results kept from before are known as such.
-pub const SOLVER_VERSION: u32 = 1;
+pub const SOLVER_VERSION: u32 = 2;

@@ -2,9 +2,10 @@
 
 use super::TlmError;
 use super::assembly::{Assembly, ascending};
-use super::blocks::{Block, Boundary, LANES, Reflected, State};
-use super::cell::{EDGES, MARGIN};
+use super::blocks::{Block, Boundary, LANES, Ports, State};
+use super::cell::{Cell, EDGES, MARGIN};
 use super::loads::Loads;
+use super::outgoing::Outgoing;
 use super::real::Real;
 use super::slots::{Chunk, Slots};
 use crate::geometry::VertexId;
@@ -33,17 +34,29 @@ pub struct NetworkSettings {
     /// Whether cells at the edges of sheets hold the energy of the singular field: without it resonances of patches
     /// are too low in proportion to the edge length there.
     pub edge_correction: bool,
+    /// Spherical waves up to this degree leave a spherical outer boundary as they would go on in free space; all others,
+    /// or all at 0 or where the boundary is no sphere, meet a first-order condition, which reflects some percent of them.
+    pub wave_degrees: usize,
     /// What else there is.
     pub loads: Loads,
 }
 
+/// Waves of an antenna of the size of a wavelength: those of higher degrees hardly leave it.
+const WAVE_DEGREES: usize = 3;
+
 impl NetworkSettings {
-    /// The usual ones: exact step, corrected sheet edges, no loads.
+    /// The usual ones: exact step, corrected sheet edges, free waves of the first degrees, no loads.
     ///
     /// * `loss_freq`: frequency at which loss tangents become conductivities, Hz.
     #[must_use]
     pub fn new(loss_freq: f64) -> Self {
-        Self { loss_freq, step: StepLimit::Exact, edge_correction: true, loads: Loads::default() }
+        Self {
+            loss_freq,
+            step: StepLimit::Exact,
+            edge_correction: true,
+            wave_degrees: WAVE_DEGREES,
+            loads: Loads::default(),
+        }
     }
 }
 
@@ -54,6 +67,10 @@ pub struct Network<T> {
     /// Terms of the last blocks, which hold all cells with boundary faces.
     pub(super) boundary: Vec<Boundary<T>>,
     pub(super) chunks: Vec<Chunk>,
+    /// Blocks from this one on lie at the outer sphere.
+    pub(super) first_outer: usize,
+    /// The waves that leave there.
+    pub(super) outgoing: Option<Outgoing<T>>,
     pub(super) n_edges: usize,
     /// For each edge where its ports' reflected currents are among those of all blocks, from `starts[e]` to `starts[e + 1]`.
     pub(super) starts: Vec<u32>,
@@ -76,7 +93,7 @@ pub struct Network<T> {
     pub n_clipped: usize,
 }
 
-/// What a cell loses: `V^T G V`, without what stands for the outside (absorber, outer boundary, port).
+/// What a cell loses: `V^T G V`, without what stands for the outside (outer boundary, port).
 #[derive(Clone, Debug)]
 pub(super) struct Lossy {
     pub(super) lane: usize,
@@ -92,7 +109,7 @@ impl<T: Real> Network<T> {
     pub fn new(mesh: &TetMesh, settings: &NetworkSettings, task: &Task) -> Result<Self, TlmError> {
         let phase = task.phase("preparing cells", 3);
         settings.loads.check(mesh)?;
-        let assembly = Assembly::new(mesh, &settings.loads, settings.edge_correction, settings.loss_freq)?;
+        let assembly = Assembly::new(mesh, settings)?;
         phase.advance(1);
         task.check()?;
         let limits: Vec<f64> = (0..assembly.cells.len()).into_par_iter().map(|k| assembly.cell(k).x_max).collect();
@@ -103,8 +120,16 @@ impl<T: Real> Network<T> {
         let slots = Slots::new(&assembly);
         let filled = slots.fill(&assembly, x);
         let (starts, places, weights) = slots.connect(&filled.0, &assembly);
+        let first_outer = slots.ends[1];
+        let outgoing = |sphere| {
+            let forms = slots.wave_forms(&assembly, sphere);
+            Outgoing::new(sphere, &filled.0[first_outer..], forms, x)
+        };
+        let outgoing = assembly.sphere.as_ref().map(outgoing);
         phase.advance(1);
         Ok(Self {
+            first_outer,
+            outgoing,
             blocks: filled.0,
             boundary: filled.1,
             chunks: slots.chunks.clone(),
@@ -137,10 +162,14 @@ impl<T: Real> Network<T> {
     /// reflected currents, edge voltages, and the lists that connect them.
     #[must_use]
     pub fn traffic(&self) -> f64 {
-        let block = size_of::<Block<T>>() + 2 * size_of::<State<T>>() + 2 * size_of::<Reflected<T>>();
+        let block = size_of::<Block<T>>() + 2 * size_of::<State<T>>() + 2 * size_of::<Ports<T>>();
         let list = size_of_val(&self.places[..]) + size_of_val(&self.starts[..]) + size_of_val(&self.weights[..]);
-        let total =
-            block * self.blocks.len() + size_of_val(&self.boundary[..]) + list + 2 * size_of::<T>() * self.n_edges;
+        let waves = self.outgoing.as_ref().map_or(0, |o| 2 * size_of_val(&o.forms[..]));
+        let total = waves
+            + block * self.blocks.len()
+            + size_of_val(&self.boundary[..])
+            + list
+            + 2 * size_of::<T>() * self.n_edges;
         total as f64 / self.n_tets as f64
     }
 
@@ -160,6 +189,18 @@ impl<T: Real> Network<T> {
         let block = &self.blocks[lane / LANES];
         std::array::from_fn(|e| Some(block.edges[e][lane % LANES]).filter(|&edge| (edge as usize) < self.n_edges))
     }
+}
+
+/// How far the scattering of a mesh's cells without losses is from orthogonal, at the worst: infinitely if a stub is
+/// negative. What is lossless keeps its energy up to this, at the step that the settings give.
+///
+/// # Errors
+/// [`TlmError::NotCoaxial`], [`TlmError::NoSheet`].
+pub fn orthogonality_error(mesh: &TetMesh, settings: &NetworkSettings) -> Result<f64, TlmError> {
+    let assembly = Assembly::new(mesh, settings)?;
+    let cells: Vec<Cell> = (0..assembly.cells.len()).into_par_iter().map(|k| assembly.cell(k)).collect();
+    let x = MARGIN * limit(&cells.iter().map(|cell| cell.x_max).collect::<Vec<_>>(), settings.step);
+    Ok(cells.par_iter().map(|cell| cell.orthogonality_error(x)).reduce(|| 0.0, f64::max))
 }
 
 /// The half step that a share of the cells allows.

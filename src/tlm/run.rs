@@ -1,10 +1,12 @@
 //! The field in time: scatter, connect, drive and read the port.
 
-use super::blocks::{LANES, Reflected, Scatter, State};
+use super::blocks::{Drive, LANES, Observe, Ports, Scatter, State};
+use super::outgoing::Outgoing;
 use super::{FieldRecorder, Network, Pulse, Real, TlmError};
 use crate::task::Task;
 use crate::units::ETA0;
 use rayon::prelude::*;
+use std::ops::Range;
 use std::time::Instant;
 
 /// Edges of several chunks that one thread takes at a time.
@@ -54,11 +56,13 @@ pub struct Run<'a, T> {
     pub(super) network: &'a Network<T>,
     pub(super) pulse: Pulse,
     pub(super) states: Vec<State<T>>,
-    pub(super) reflected: Vec<Reflected<T>>,
+    pub(super) reflected: Vec<Ports<T>>,
     /// Edge voltages; one more than there are edges, always zero.
     pub(super) voltages: Vec<T>,
     /// Those of the next connection, while cells still read the last ones.
     next: Vec<T>,
+    /// States of the circuits of the waves at the outer sphere.
+    pub(super) waves: Vec<f64>,
     pub(super) record: Record,
     pub(super) fields: Option<FieldRecorder>,
     /// Edge along which a current is impressed, instead of a wave at the port.
@@ -77,6 +81,7 @@ impl<'a, T: Real> Run<'a, T> {
             reflected: vec![[[T::default(); LANES]; 6]; network.blocks.len()],
             voltages: vec![T::default(); network.n_edges + 1],
             next: vec![T::default(); network.n_edges + 1],
+            waves: network.outgoing.as_ref().map(Outgoing::start).unwrap_or_default(),
             record: Record { dt: network.dt, ..Record::default() },
             fields: None,
             impressed: None,
@@ -150,7 +155,7 @@ impl<'a, T: Real> Run<'a, T> {
     }
 
     #[cfg(test)]
-    pub(super) fn reflected(&self) -> &[Reflected<T>] {
+    pub(super) fn reflected(&self) -> &[Ports<T>] {
         &self.reflected
     }
 
@@ -181,6 +186,7 @@ impl<'a, T: Real> Run<'a, T> {
     fn scatter(&mut self, signal: T) -> f64 {
         let arch = pulp::Arch::new();
         let network = self.network;
+        let currents = self.leave(arch);
         let n_inner = network.blocks.len() - network.boundary.len();
         let voltages = &self.voltages[..];
         let (mut states, mut reflected, mut next) = (&mut self.states[..], &mut self.reflected[..], &mut self.next[..]);
@@ -195,15 +201,41 @@ impl<'a, T: Real> Run<'a, T> {
         }
         let seen = parts.into_par_iter().map(|(chunk, states, reflected, next)| {
             let blocks = &network.blocks[chunk.blocks.clone()];
-            let terms = || &network.boundary[chunk.blocks.start - n_inner..chunk.blocks.end - n_inner];
-            let boundary = (chunk.blocks.start >= n_inner).then(|| (terms(), signal));
-            let seen = arch.dispatch(Scatter { blocks, states, reflected, voltages, boundary });
+            let drive = (chunk.blocks.start >= n_inner).then(|| Drive {
+                terms: &network.boundary[chunk.blocks.start - n_inner..chunk.blocks.end - n_inner],
+                signal,
+                waves: network.forms(&chunk.blocks).map(|forms| (forms, &currents[..])),
+            });
+            let seen = arch.dispatch(Scatter { blocks, states, reflected, voltages, drive });
             let reflected = reflected.as_flattened().as_flattened();
             network.connect(chunk.edges.start, next, reflected, chunk.blocks.start * 6 * LANES);
             seen
         });
         // Summed in the order of the chunks, whichever thread was first.
         seen.collect::<Vec<f64>>().iter().sum()
+    }
+
+    /// The currents of the waves at the outer sphere, whose circuits go on by a step.
+    fn leave(&mut self, arch: pulp::Arch) -> Vec<T> {
+        let network = self.network;
+        let Some(outgoing) = &network.outgoing else { return Vec::new() };
+        let seen = network.chunks.par_iter().filter_map(|chunk| {
+            let range = chunk.blocks.clone();
+            Some(arch.dispatch(Observe {
+                forms: network.forms(&range)?,
+                blocks: &network.blocks[range.clone()],
+                states: &self.states[range.clone()],
+                reflected: &self.reflected[range],
+                voltages: &self.voltages,
+                n_waves: outgoing.n_waves(),
+            }))
+        });
+        // Summed in the order of the chunks.
+        let mut sums = vec![0.0; outgoing.n_waves()];
+        for seen in seen.collect::<Vec<_>>() {
+            sums.iter_mut().zip(seen).for_each(|(sum, seen)| *sum += seen);
+        }
+        outgoing.step(&sums, &mut self.waves).into_iter().map(T::new).collect()
     }
 
     /// The edges of several chunks.
@@ -217,6 +249,13 @@ impl<'a, T: Real> Run<'a, T> {
 }
 
 impl<T: Real> Network<T> {
+    /// Forms of the waves for blocks at the outer sphere.
+    fn forms(&self, blocks: &Range<usize>) -> Option<&[Ports<T>]> {
+        let outgoing = self.outgoing.as_ref().filter(|_| blocks.start >= self.first_outer)?;
+        let places = [blocks.start, blocks.end].map(|b| (b - self.first_outer) * outgoing.n_waves());
+        Some(&outgoing.forms[places[0]..places[1]])
+    }
+
     /// Voltages of some edges, from what their cells reflect.
     ///
     /// * `first`: number of the first edge; `offset`: place of the first of the reflected currents among all.

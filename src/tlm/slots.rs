@@ -4,9 +4,10 @@
 //! chunk has, while what its cells reflect is still in the cache. Edges of several chunks come last.
 
 use super::assembly::Assembly;
-use super::blocks::{ADMITTANCE, Block, Boundary, LANES};
+use super::blocks::{ADMITTANCE, Block, Boundary, LANES, Ports};
 use super::cell::EDGES;
 use super::network::Lossy;
+use super::outgoing::OuterSphere;
 use super::real::Real;
 use crate::geometry::VertexId;
 use rayon::prelude::*;
@@ -31,19 +32,22 @@ pub(super) struct Slots {
     pub(super) edges: Vec<[u32; 6]>,
     pub(super) n_edges: usize,
     /// Ends of each edge, ascending.
-    pub(super) ends: Vec<[VertexId; 2]>,
-    /// Blocks before this one have no boundary faces.
-    n_inner_blocks: usize,
+    pub(super) edge_ends: Vec<[VertexId; 2]>,
+    /// Blocks before the first of these have no boundary faces, those from the second on lie at the outer sphere.
+    pub(super) ends: [usize; 2],
     pub(super) chunks: Vec<Chunk>,
 }
 
-/// Chunks of blocks, those with boundary faces apart from the others; and the final number of each edge.
+/// Chunks of blocks, those of each part apart from the others; and the final number of each edge.
 ///
 /// * `edges`: by lane, numbered by first touch.
-fn chunks(edges: &[[u32; 6]], n_inner_blocks: usize, n_edges: usize) -> (Vec<Chunk>, Vec<u32>) {
+fn chunks(edges: &[[u32; 6]], ends: [usize; 2], n_edges: usize) -> (Vec<Chunk>, Vec<u32>) {
     let n_blocks = edges.len() / LANES;
     let ranges = |from: usize, to: usize| (from..to).step_by(CHUNK).map(move |b| b..(b + CHUNK).min(to));
-    let blocks: Vec<Range<usize>> = ranges(0, n_inner_blocks).chain(ranges(n_inner_blocks, n_blocks)).collect();
+    let blocks: Vec<Range<usize>> = [(0, ends[0]), (ends[0], ends[1]), (ends[1], n_blocks)]
+        .into_iter()
+        .flat_map(|(from, to)| ranges(from, to))
+        .collect();
     // The chunk of each edge; the number of chunks for those of several.
     let mut owner = vec![usize::MAX; n_edges];
     for (c, range) in blocks.iter().enumerate() {
@@ -65,11 +69,15 @@ fn chunks(edges: &[[u32; 6]], n_inner_blocks: usize, n_edges: usize) -> (Vec<Chu
 impl Slots {
     pub(super) fn new(assembly: &Assembly<'_>) -> Self {
         let n = assembly.cells.len();
-        let pad = |count: usize| count.div_ceil(LANES) * LANES;
-        let n_inner_lanes = pad(assembly.n_inner);
-        let inner = (0..n_inner_lanes).map(|k| (k < assembly.n_inner).then_some(k));
-        let rest = (0..pad(n - assembly.n_inner)).map(|k| Some(assembly.n_inner + k).filter(|&k| k < n));
-        let cells: Vec<Option<usize>> = inner.chain(rest).collect();
+        let mut cells: Vec<Option<usize>> = Vec::with_capacity(n + 3 * LANES);
+        let mut fill_up = |from: usize, to: usize| {
+            cells.extend((from..to).map(Some));
+            cells.resize(cells.len().next_multiple_of(LANES), None);
+            cells.len() / LANES
+        };
+        let [inner, rest] = assembly.ends;
+        let ends = [fill_up(0, inner), fill_up(inner, rest)];
+        fill_up(rest, n);
         // Edges by first touch: what a block needs lies close together.
         let mut number: HashMap<[VertexId; 2], u32> = HashMap::with_capacity(2 * n);
         let mut edges = Vec::with_capacity(cells.len());
@@ -90,13 +98,12 @@ impl Slots {
             }));
         }
         let n_edges = number.len();
-        let n_inner_blocks = n_inner_lanes / LANES;
-        let (chunks, order) = chunks(&edges, n_inner_blocks, n_edges);
-        let mut ends: Vec<[VertexId; 2]> = vec![[VertexId::new(0); 2]; n_edges];
-        number.into_iter().for_each(|(edge, k)| ends[order[k as usize] as usize] = edge);
+        let (chunks, order) = chunks(&edges, ends, n_edges);
+        let mut edge_ends: Vec<[VertexId; 2]> = vec![[VertexId::new(0); 2]; n_edges];
+        number.into_iter().for_each(|(edge, k)| edge_ends[order[k as usize] as usize] = edge);
         let none = VertexId::new(n_edges).raw();
         edges.iter_mut().flatten().for_each(|e| *e = order.get(*e as usize).copied().unwrap_or(none));
-        Self { cells, edges, n_edges, ends, n_inner_blocks, chunks }
+        Self { cells, edges, n_edges, edge_ends, ends, chunks }
     }
 
     pub(super) fn tets(&self, assembly: &Assembly<'_>) -> Vec<u32> {
@@ -116,15 +123,15 @@ impl Slots {
     }
 
     pub(super) fn resistors(&self, assembly: &Assembly<'_>) -> Vec<(u32, f64)> {
-        let edges = (0..).zip(&self.ends).map(|(k, &edge)| (k, assembly.conductance(edge)));
+        let edges = (0..).zip(&self.edge_ends).map(|(k, &edge)| (k, assembly.conductance(edge)));
         edges.filter(|(_, conductance)| *conductance > 0.0).collect()
     }
 
     pub(super) fn fill<T: Real>(&self, assembly: &Assembly<'_>, x: f64) -> (Vec<Block<T>>, Vec<Boundary<T>>) {
         let lanes = self.cells.par_chunks(LANES).zip(self.edges.par_chunks(LANES)).enumerate();
         let blocks = lanes.map(|(b, (cells, edges))| {
-            let mut block = Block { coefficients: [[T::default(); LANES]; 35], edges: [[0; LANES]; 6] };
-            let mut boundary = (b >= self.n_inner_blocks).then(|| Boundary { terms: [[T::default(); LANES]; 33] });
+            let mut block = Block { coefficients: [[T::default(); LANES]; 34], edges: [[0; LANES]; 6] };
+            let mut boundary = (b >= self.ends[0]).then(|| Boundary { terms: [[T::default(); LANES]; 33] });
             for (w, (cell, ports)) in cells.iter().zip(edges).enumerate() {
                 (0..6).for_each(|e| block.edges[e][w] = ports[e]);
                 if let Some(k) = *cell {
@@ -140,6 +147,22 @@ impl Slots {
         (blocks, boundary.into_iter().flatten().collect())
     }
 
+    /// What the waves at the outer sphere see of the blocks there, wave by wave for each block.
+    pub(super) fn wave_forms<T: Real>(&self, assembly: &Assembly<'_>, sphere: &OuterSphere) -> Vec<Ports<T>> {
+        let n = sphere.n_waves();
+        let of_block = |cells: &[Option<usize>]| {
+            let mut forms = vec![[[T::default(); LANES]; 6]; n];
+            for (w, k) in cells.iter().enumerate().filter_map(|(w, k)| Some((w, (*k)?))) {
+                let of_cell = assembly.wave_forms(sphere, k);
+                (0..n)
+                    .flat_map(|m| (0..6).map(move |e| (m, e)))
+                    .for_each(|(m, e)| forms[m][e][w] = T::new(of_cell[(e, m)]));
+            }
+            forms
+        };
+        self.cells[self.ends[1] * LANES..].par_chunks(LANES).flat_map_iter(of_block).collect()
+    }
+
     /// For each edge its ports' places in the state, and `2 / (sum Y + conductance of resistors)`.
     pub(super) fn connect<T: Real>(
         &self,
@@ -152,7 +175,7 @@ impl Slots {
         (0..self.n_edges).for_each(|e| starts[e + 1] += starts[e]);
         let mut next = starts.clone();
         let mut places = vec![0_u32; starts[self.n_edges] as usize];
-        let mut sums: Vec<f64> = self.ends.iter().map(|&edge| assembly.conductance(edge)).collect();
+        let mut sums: Vec<f64> = self.edge_ends.iter().map(|&edge| assembly.conductance(edge)).collect();
         for (lane, ports) in self.edges.iter().enumerate() {
             let (b, w) = (lane / LANES, lane % LANES);
             for (e, &edge) in ports.iter().enumerate().filter(|(_, edge)| live(**edge)) {
