@@ -12,7 +12,7 @@ use super::session::{News, Session, first_project};
 use super::solve_session::{SolveNews, SolveSession};
 use super::status::{self, Messages, Weight};
 use super::theme;
-use super::ui_state::{RightTab, UiState};
+use super::ui_state::{RightTab, Tab, UiState};
 use super::viewport::{Sources, Viewport};
 use super::{bars, paint, palette, panel_results};
 use crate::pipeline::mesh_job::MeshJob;
@@ -93,6 +93,7 @@ impl App {
             shows_cage: self.state.shows_cage,
             sees_through: self.state.sees_through,
             shows_log: self.state.shows_log,
+            shows_history: self.state.tab == Tab::History,
             selects_by_box: self.state.selects_by_box,
             theme: Some(self.state.theme),
         }
@@ -108,6 +109,7 @@ impl App {
             }
             Action::Cancel => self.session.cancel(),
             Action::Edit(place, edit) => self.edit(place, edit),
+            Action::GoTo(step) => self.session.go_to(step),
             Action::AddPreset(preset) => {
                 let index = self.session.project().presets.len();
                 let entry = PresetEntry { enabled: true, preset };
@@ -230,6 +232,9 @@ impl App {
             }
             Command::ShowCage => state.shows_cage = !state.shows_cage,
             Command::SeeThrough => state.sees_through = !state.sees_through,
+            Command::ShowHistory => {
+                state.tab = if state.tab == Tab::History { Tab::Cage } else { Tab::History };
+            }
             Command::ShowLog => state.shows_log = !state.shows_log,
             Command::Theme(theme) => {
                 state.theme = theme;

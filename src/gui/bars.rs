@@ -15,7 +15,7 @@ pub(super) const MENUS: [Menu; 6] = [
     (
         "Edit",
         &[
-            &[C::Undo, C::Redo],
+            &[C::Undo, C::Redo, C::ShowHistory],
             &[C::SelectAll, C::SelectNone, C::BoxSelect],
             &[C::ResetSelected, C::ResetAll],
             &[C::Palette],

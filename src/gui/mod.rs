@@ -33,6 +33,7 @@ mod panel_antenna;
 mod panel_cage;
 mod panel_compensation;
 mod panel_distortion;
+mod panel_history;
 mod panel_mesh;
 mod panel_results;
 mod panel_solve;
@@ -53,6 +54,8 @@ mod status;
 mod tests;
 #[cfg(test)]
 mod tests_mesh;
+#[cfg(test)]
+mod tests_random;
 #[cfg(test)]
 mod tests_shell;
 #[cfg(test)]

@@ -17,6 +17,8 @@ pub(super) enum Action {
     End,
     /// The gesture is called off.
     Cancel,
+    /// Goes to a step of the history, by its number.
+    GoTo(u64),
     /// A command.
     Run(Command),
     /// Adds a preset at the end of the stack.

@@ -189,7 +189,12 @@ impl Session {
         self.step(History::redo);
     }
 
-    fn step(&mut self, step: fn(&mut History) -> bool) {
+    /// Goes to a step of the history, on whatever branch.
+    pub(super) fn go_to(&mut self, step: u64) {
+        self.step(|history| history.go_to(step));
+    }
+
+    fn step(&mut self, step: impl FnOnce(&mut History) -> bool) {
         step(&mut self.history);
         self.in_gesture = false;
         self.guarded = false;
@@ -281,9 +286,9 @@ impl Session {
         }
     }
 
-    /// Undoes the last gesture, and goes as far in its direction as is possible.
+    /// Takes the last gesture back without a trace, and goes as far in its direction as is possible.
     fn take_back(&mut self, furthest: Option<&Project>) {
-        self.history.undo();
+        self.history.withdraw();
         if let Some(furthest) = furthest {
             self.history.begin();
             self.head_for(furthest);

@@ -15,6 +15,8 @@ pub(super) enum Tab {
     /// Cage, presets, hand edits.
     #[default]
     Cage,
+    /// Steps of the project's history.
+    History,
 }
 
 /// What is painted on the antenna.

@@ -9,6 +9,7 @@ pub mod check;
 pub mod edit;
 pub mod file;
 pub mod history;
+mod name;
 
 pub use check::ProjectError;
 pub use edit::{Edit, EditError};
