@@ -2,6 +2,7 @@
 //!
 //! Menus, toolbar and shortcuts all read this one list, so that none can say something the others do not.
 
+use crate::project::Example;
 use crate::render::StandardView;
 use egui::{Context, Key, KeyboardShortcut, Modifiers, ThemePreference, os::OperatingSystem};
 
@@ -12,6 +13,7 @@ pub(super) enum Command {
     Open,
     Save,
     SaveAs,
+    ClearRecent,
     Export,
     Quit,
     Undo,
@@ -40,6 +42,8 @@ pub(super) enum Command {
     Theme(ThemePreference),
     Palette,
     Keys,
+    Welcome,
+    Example(Example),
 }
 
 /// What decides whether a command can be used, and whether it is ticked.
@@ -48,6 +52,7 @@ pub(super) enum Command {
 pub(super) struct Facts {
     pub(super) can_undo: bool,
     pub(super) can_redo: bool,
+    pub(super) has_recent: bool,
     pub(super) has_selection: bool,
     pub(super) has_hand_edits: bool,
     pub(super) compensates: bool,
@@ -74,6 +79,7 @@ impl Command {
         Self::Open,
         Self::Save,
         Self::SaveAs,
+        Self::ClearRecent,
         Self::Export,
         Self::Quit,
         Self::Undo,
@@ -110,6 +116,12 @@ impl Command {
         Self::Theme(ThemePreference::Dark),
         Self::Palette,
         Self::Keys,
+        Self::Welcome,
+        Self::Example(Example::Flat),
+        Self::Example(Example::BentH),
+        Self::Example(Example::BentE),
+        Self::Example(Example::Saddle),
+        Self::Example(Example::Twist),
     ];
 
     /// The text in menus and on buttons, and what it does.
@@ -119,6 +131,7 @@ impl Command {
             Self::Open => ("Open…", "Open a project file"),
             Self::Save => ("Save", "Save the project file"),
             Self::SaveAs => ("Save as…", "Save the project under another name"),
+            Self::ClearRecent => ("Clear recent files", "Forget which files were used last; the files stay"),
             Self::Export => ("Export…", "Write the geometry with its certificate of no gaps"),
             Self::Quit => ("Quit", "Close the window"),
             Self::Undo => ("Undo", "Take back the last step"),
@@ -159,6 +172,14 @@ impl Command {
             Self::Theme(ThemePreference::Dark) => ("Dark", "Light lettering on a dark ground"),
             Self::Palette => ("Find a command…", "Search all commands by what they are called or do"),
             Self::Keys => ("Keys and mouse", "List what the keys and the mouse do"),
+            Self::Welcome => ("Welcome", "Examples and recent files to begin with"),
+            Self::Example(example) => match example {
+                Example::Flat => ("Flat antenna", "The paper's patch antenna as drawn, in a cage"),
+                Example::BentH => ("Bent, H-plane, R = 10 mm", "The width curves around a cylinder along y"),
+                Example::BentE => ("Bent, E-plane, R = 10 mm", "The resonant length curves around a cylinder along x"),
+                Example::Saddle => ("Saddle", "Curved in opposite ways along x and y"),
+                Example::Twist => ("Twist", "A half wave across the patch that turns along it"),
+            },
         }
     }
 
@@ -204,6 +225,7 @@ impl Command {
             Self::ShowHistory => vec![command(Key::H)],
             Self::Palette => vec![command_shift(Key::P)],
             Self::Keys => vec![plain(Key::F1)],
+            Self::ClearRecent | Self::Welcome | Self::Example(_) => Vec::new(),
             Self::ResetAll | Self::CompensateNot | Self::ShowLog | Self::Theme(_) => Vec::new(),
         }
     }
@@ -213,6 +235,7 @@ impl Command {
         let (is_possible, why) = match self {
             Self::Undo => (facts.can_undo, "there is nothing to take back"),
             Self::Redo => (facts.can_redo, "nothing was taken back"),
+            Self::ClearRecent => (facts.has_recent, "no file was used yet"),
             Self::SelectNone => (facts.has_selection, "no vertex is selected"),
             Self::ResetSelected if facts.has_hand_edits => (facts.has_selection, "no vertex is selected"),
             Self::ResetSelected | Self::ResetAll => (facts.has_hand_edits, "no vertex was moved by hand"),

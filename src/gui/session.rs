@@ -9,9 +9,7 @@ use crate::cage::Cage;
 use crate::geometry::DVec3;
 use crate::pipeline::worker::{Quality, Reply, Worker};
 use crate::pipeline::{Deformed, PipelineError};
-use crate::project::{
-    BendPlane, CompensationMode, Edit, EditError, History, PresetEntry, PresetSpec, Project, RuleSpec,
-};
+use crate::project::{Edit, EditError, Example, History, Project};
 use crate::task::Progress;
 use crate::units::{from_mm, to_mm};
 use std::path::{Path, PathBuf};
@@ -72,13 +70,7 @@ pub(super) struct Session {
 /// What the window starts with: the paper's antenna, bent so that there is something to see.
 #[must_use]
 pub(super) fn first_project() -> Project {
-    let bend = PresetSpec::Bend { plane: BendPlane::H, radius_mm: 10.0, rule: RuleSpec::Tangent, kept_plane_mm: 0.0 };
-    let mut project = Project { presets: vec![PresetEntry { enabled: true, preset: bend }], ..Project::default() };
-    // The uncompensated antenna comes first: its errors are what the compensation then removes.
-    project.settings.compensation = CompensationMode::None;
-    // As many vertices as a hand can choose among.
-    project.cage.segments = [10, 4];
-    project
+    Example::BentH.project()
 }
 
 impl Session {

@@ -25,7 +25,7 @@ fn bytes(app: &App) -> Vec<u8> {
 
 /// Whether it leads to another project or out of the window.
 fn leaves(command: Command) -> bool {
-    matches!(command, Command::New | Command::Open | Command::Quit)
+    matches!(command, Command::New | Command::Open | Command::Quit | Command::Example(_))
 }
 
 /// Now and then nonsense.
