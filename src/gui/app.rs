@@ -180,6 +180,7 @@ impl App {
                 }
             }
             Action::RemoveRun(serial) => self.solve.remove(serial),
+            Action::SavePlot(kind) => self.ask_plot(kind),
             Action::Say(weight, text) => self.messages.say(weight, &text),
             Action::OpenPath(path) => self.open(&path),
             Action::SavePath(path) => {
@@ -270,6 +271,7 @@ impl App {
                     self.dialog = Dialog::ResultExport(Box::new(dialog));
                 }
             }
+            Command::SavePlot => self.ask_plot(None),
             Command::Fit => state.fit = true,
             Command::LookFrom(view) => state.camera.look_from(view),
             Command::Orthographic => {

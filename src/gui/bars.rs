@@ -21,7 +21,7 @@ pub(super) fn menus(ui: &mut Ui, facts: &Facts, out: &mut Outbox) {
         menu(
             ui,
             "File",
-            vec![C::New, C::Open, C::Save, C::SaveAs, C::Export, C::ExportMesh, C::ExportResults, C::Quit],
+            vec![C::New, C::Open, C::Save, C::SaveAs, C::Export, C::ExportMesh, C::ExportResults, C::SavePlot, C::Quit],
             out,
         );
         let edit = [C::Undo, C::Redo, C::SelectAll, C::SelectNone, C::BoxSelect, C::ResetSelected, C::ResetAll];

@@ -30,6 +30,7 @@ pub(super) enum Command {
     ShowResults,
     ShowPattern,
     ExportResults,
+    SavePlot,
     Fit,
     LookFrom(StandardView),
     Orthographic,
@@ -66,7 +67,7 @@ pub(super) struct Facts {
 
 impl Command {
     /// All commands, in the order of the menus.
-    pub(super) const ALL: [Self; 38] = [
+    pub(super) const ALL: [Self; 39] = [
         Self::New,
         Self::Open,
         Self::Save,
@@ -89,6 +90,7 @@ impl Command {
         Self::ShowResults,
         Self::ShowPattern,
         Self::ExportResults,
+        Self::SavePlot,
         Self::Fit,
         Self::LookFrom(StandardView::Front),
         Self::LookFrom(StandardView::Back),
@@ -134,6 +136,7 @@ impl Command {
             Self::ShowResults => ("Results", "Show reflection, Smith chart and figures of the runs below the view"),
             Self::ShowPattern => ("3-D pattern", "Draw the radiation pattern around the antenna"),
             Self::ExportResults => ("Export results…", "Write a run's reflection as a table or a Touchstone file"),
+            Self::SavePlot => ("Save plot…", "Save a plot as SVG, PNG or CSV, as it would be printed"),
             Self::Fit => ("Fit", "Show all of the antenna and its cage, or of the mesh"),
             Self::LookFrom(view) => match view {
                 StandardView::Front => ("Front", "Look along +y, x to the right"),
@@ -195,7 +198,7 @@ impl Command {
             Self::ShowCage => vec![plain(Key::C)],
             Self::SeeThrough => vec![plain(Key::T)],
             Self::Keys => vec![plain(Key::F1)],
-            Self::ResetAll | Self::CompensateNot | Self::ShowLog | Self::Theme(_) => Vec::new(),
+            Self::ResetAll | Self::CompensateNot | Self::SavePlot | Self::ShowLog | Self::Theme(_) => Vec::new(),
         }
     }
 
@@ -211,6 +214,7 @@ impl Command {
             Self::ExportMesh | Self::ShowMesh => facts.has_mesh,
             Self::Solve => !facts.is_solving,
             Self::ExportResults => facts.has_results,
+            Self::SavePlot => facts.has_results || facts.has_mesh,
             Self::ShowPattern => facts.has_pattern,
             // There is no cage in the view of the mesh.
             Self::BoxSelect | Self::ShowCage | Self::SeeThrough => !facts.shows_mesh,

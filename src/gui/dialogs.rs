@@ -7,6 +7,7 @@ use super::command::Command;
 use super::export_dialog::ExportDialog;
 use super::mesh_export::MeshExport;
 use super::outbox::{Action, Outbox};
+use super::plot_export::PlotExport;
 use super::result_export::ResultExport;
 use super::session::first_project;
 use super::theme::Tokens;
@@ -46,6 +47,7 @@ pub(super) enum Dialog {
     Export(Box<ExportDialog>),
     MeshExport(Box<MeshExport>),
     ResultExport(Box<ResultExport>),
+    PlotExport(Box<PlotExport>),
     Keys,
 }
 
@@ -222,6 +224,7 @@ impl Dialog {
                 Self::Export(dialog) => dialog.ui(ui, state),
                 Self::MeshExport(dialog) => dialog.ui(ui, state, out),
                 Self::ResultExport(dialog) => dialog.ui(ui, state, out),
+                Self::PlotExport(dialog) => dialog.ui(ui, state, out),
                 Self::Keys => keys(ui),
             }
         });
