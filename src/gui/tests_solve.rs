@@ -421,5 +421,5 @@ fn every_plot_is_saved_in_every_form_from_its_menu() {
     window.get_all_by_label("Save").last().expect("the button of the dialog").click();
     window.run_steps(3);
     let csv = std::fs::read_to_string(folder.path().join("two-pattern.csv")).expect("the plot on show");
-    assert!(csv.starts_with("dial,curve,angle_deg,value_dBi") && csv.lines().count() > 1000, "its numbers");
+    assert!(csv.starts_with("dial,curve,angle_deg,value_dBi") && csv.lines().count() > 700, "its numbers: {csv:.200}");
 }
