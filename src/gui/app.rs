@@ -1,32 +1,29 @@
 //! The window: collects replies, draws the panels, carries out what they ask for.
 
 use super::command::{Command, Facts};
-use super::dialogs::{Dialog, Next};
+use super::dialogs::{About, Dialog, Next};
 use super::export_dialog::ExportDialog;
-use super::field::Refused;
 use super::mesh_export::MeshExport;
 use super::mesh_session::{MeshNews, MeshSession};
 use super::outbox::{Action, Outbox};
+use super::palette::Palette;
 use super::result_export::ResultExport;
 use super::session::{News, Session, first_project};
 use super::solve_session::{SolveNews, SolveSession};
 use super::status::{self, Messages, Weight};
 use super::theme;
-use super::ui_state::{RightTab, Tab, UiState};
+use super::ui_state::{RightTab, UiState};
 use super::viewport::{Sources, Viewport};
-use super::{bars, paint, panel_antenna, panel_cage, panel_compensation, panel_distortion, panel_mesh};
-use super::{panel_results, panel_solve};
+use super::{bars, paint, palette, panel_results};
 use crate::pipeline::mesh_job::MeshJob;
 use crate::pipeline::solve_job::SolveJob;
 use crate::pipeline::worker::Worker;
 use crate::project::{CompensationMode, Edit, PresetEntry, Settings};
 use crate::render::Projection;
-use egui::{CentralPanel, Frame, Panel, ScrollArea, Ui, ViewportCommand};
+use egui::{CentralPanel, Frame, Panel, Ui, ViewportCommand};
 use std::path::Path;
 
 const STATE_KEY: &str = "window";
-/// Widths of the side panels, points: all inputs fit, and 1280 points leave the view the larger half.
-const SIDE_WIDTHS: [f32; 2] = [300.0, 316.0];
 
 /// The window's application.
 #[derive(Debug)]
@@ -101,54 +98,6 @@ impl App {
         }
     }
 
-    fn side_panels(&mut self, ui: &mut Ui, facts: &Facts, out: &mut Outbox) {
-        let pose = self.session.pose().cloned();
-        Panel::left("left").default_size(SIDE_WIDTHS[0]).size_range(260.0..=420.0).show(ui, |ui| {
-            ui.add_space(4.0);
-            ui.horizontal(|ui| {
-                ui.selectable_value(&mut self.state.tab, Tab::Cage, "Cage").on_hover_text("Presets, cage and vertices");
-                let tip = "Dimensions and materials of the flat antenna";
-                ui.selectable_value(&mut self.state.tab, Tab::Antenna, "Antenna").on_hover_text(tip);
-            });
-            ui.separator();
-            ScrollArea::vertical().auto_shrink(false).id_salt(self.state.tab == Tab::Cage).show(ui, |ui| {
-                match self.state.tab {
-                    Tab::Antenna => panel_antenna::ui(ui, &self.session.project().antenna, &mut self.state, out),
-                    Tab::Cage => panel_cage::ui(ui, self.session.project(), pose.as_ref(), &mut self.state, out),
-                }
-            });
-        });
-        Panel::right("right").default_size(SIDE_WIDTHS[1]).size_range(280.0..=440.0).show(ui, |ui| {
-            ui.add_space(4.0);
-            ui.horizontal(|ui| {
-                let tip = "Distortion of the deformed antenna and its compensation";
-                ui.selectable_value(&mut self.state.right_tab, RightTab::Figures, "Deformation").on_hover_text(tip);
-                let tip = "The tetrahedral mesh of the antenna and the air around it";
-                ui.selectable_value(&mut self.state.right_tab, RightTab::Mesh, "Mesh").on_hover_text(tip);
-                let tip = "The field: reflection and radiation";
-                ui.selectable_value(&mut self.state.right_tab, RightTab::Solve, "Solve").on_hover_text(tip);
-            });
-            ui.separator();
-            let tab = self.state.right_tab;
-            ScrollArea::vertical().auto_shrink(false).id_salt(tab as u8).show(ui, |ui| match tab {
-                RightTab::Figures => {
-                    ui.heading("Distortion");
-                    panel_distortion::ui(ui, &self.session, &mut self.state);
-                    ui.add_space(6.0);
-                    ui.separator();
-                    ui.heading("Compensation");
-                    panel_compensation::ui(ui, &self.session, Refused(self.state.refused.as_ref()), out);
-                }
-                RightTab::Mesh => {
-                    panel_mesh::ui(ui, self.session.project(), &self.mesh, facts, &mut self.state, out);
-                }
-                RightTab::Solve => {
-                    panel_solve::ui(ui, self.session.project(), &mut self.solve, facts, &mut self.state, out);
-                }
-            });
-        });
-    }
-
     pub(super) fn carry_out(&mut self, ctx: &egui::Context, action: Action) {
         match action {
             Action::Begin => self.session.begin(),
@@ -216,6 +165,7 @@ impl App {
 
     fn run(&mut self, ctx: &egui::Context, command: Command) {
         let state = &mut self.state;
+        palette::note(&mut state.recent_commands, command);
         match command {
             Command::New => self.ask_unsaved(ctx, Next::New),
             Command::Open => self.ask_unsaved(ctx, Next::Open),
@@ -287,6 +237,7 @@ impl App {
                 state.theme = theme;
                 ctx.set_theme(theme);
             }
+            Command::Palette => self.dialog = Dialog::Palette(Palette::default()),
             Command::Keys => self.dialog = Dialog::Keys,
         }
     }
@@ -414,8 +365,8 @@ impl eframe::App for App {
             let sources = Sources { session: &self.session, pose: pose.as_ref(), mesh, solve };
             self.viewport.ui(ui, sources, &mut self.state, &mut out);
         });
-        let name = self.session.name();
-        self.dialog.ui(&ctx, &name, &mut self.state, &mut out);
+        let about = About { name: &self.session.name(), facts: &facts };
+        self.dialog.ui(&ctx, about, &mut self.state, &mut out);
         self.messages.show_toasts(&ctx, raised);
         for action in out.actions {
             self.carry_out(&ctx, action);

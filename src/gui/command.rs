@@ -38,6 +38,7 @@ pub(super) enum Command {
     SeeThrough,
     ShowLog,
     Theme(ThemePreference),
+    Palette,
     Keys,
 }
 
@@ -67,7 +68,7 @@ pub(super) struct Facts {
 
 impl Command {
     /// All commands, in the order of the menus.
-    pub(super) const ALL: [Self; 39] = [
+    pub(super) const ALL: &'static [Self] = &[
         Self::New,
         Self::Open,
         Self::Save,
@@ -106,6 +107,7 @@ impl Command {
         Self::Theme(ThemePreference::System),
         Self::Theme(ThemePreference::Light),
         Self::Theme(ThemePreference::Dark),
+        Self::Palette,
         Self::Keys,
     ];
 
@@ -154,6 +156,7 @@ impl Command {
             Self::Theme(ThemePreference::System) => ("As the system", "Light or dark as the desktop is"),
             Self::Theme(ThemePreference::Light) => ("Light", "Dark lettering on a light ground"),
             Self::Theme(ThemePreference::Dark) => ("Dark", "Light lettering on a dark ground"),
+            Self::Palette => ("Find a command…", "Search all commands by what they are called or do"),
             Self::Keys => ("Keys and mouse", "List what the keys and the mouse do"),
         }
     }
@@ -197,29 +200,39 @@ impl Command {
             Self::Orthographic => vec![plain(Key::Num5)],
             Self::ShowCage => vec![plain(Key::C)],
             Self::SeeThrough => vec![plain(Key::T)],
+            Self::Palette => vec![command_shift(Key::P)],
             Self::Keys => vec![plain(Key::F1)],
             Self::ResetAll | Self::CompensateNot | Self::SavePlot | Self::ShowLog | Self::Theme(_) => Vec::new(),
         }
     }
 
+    /// Why it cannot be used now; `None` if it can.
+    pub(super) fn why_not(self, facts: &Facts) -> Option<&'static str> {
+        let (is_possible, why) = match self {
+            Self::Undo => (facts.can_undo, "there is nothing to take back"),
+            Self::Redo => (facts.can_redo, "nothing was taken back"),
+            Self::SelectNone => (facts.has_selection, "no vertex is selected"),
+            Self::ResetSelected if facts.has_hand_edits => (facts.has_selection, "no vertex is selected"),
+            Self::ResetSelected | Self::ResetAll => (facts.has_hand_edits, "no vertex was moved by hand"),
+            Self::CompensateNot => (facts.compensates, "there is no compensation"),
+            Self::ExportMesh | Self::ShowMesh => (facts.has_mesh, "there is no mesh yet"),
+            Self::Solve => (!facts.is_solving, "a run is under way"),
+            Self::ExportResults => (facts.has_results, "there are no results yet"),
+            Self::SavePlot => {
+                (facts.has_results || facts.has_mesh, "there is nothing to plot: no results and no mesh yet")
+            }
+            Self::ShowPattern => (facts.has_pattern, "no run with a pattern yet"),
+            Self::BoxSelect | Self::ShowCage | Self::SeeThrough => {
+                (!facts.shows_mesh, "there is no cage in the view of the mesh")
+            }
+            _ => return None,
+        };
+        (!is_possible).then_some(why)
+    }
+
     /// Whether it can be used now.
     pub(super) fn is_enabled(self, facts: &Facts) -> bool {
-        match self {
-            Self::Undo => facts.can_undo,
-            Self::Redo => facts.can_redo,
-            Self::SelectNone => facts.has_selection,
-            Self::ResetSelected => facts.has_selection && facts.has_hand_edits,
-            Self::ResetAll => facts.has_hand_edits,
-            Self::CompensateNot => facts.compensates,
-            Self::ExportMesh | Self::ShowMesh => facts.has_mesh,
-            Self::Solve => !facts.is_solving,
-            Self::ExportResults => facts.has_results,
-            Self::SavePlot => facts.has_results || facts.has_mesh,
-            Self::ShowPattern => facts.has_pattern,
-            // There is no cage in the view of the mesh.
-            Self::BoxSelect | Self::ShowCage | Self::SeeThrough => !facts.shows_mesh,
-            _ => true,
-        }
+        self.why_not(facts).is_none()
     }
 
     /// Whether it is ticked; `None` for commands that are no switches.
@@ -281,8 +294,7 @@ impl Command {
         if let Some(shortcut) = keys.first() {
             button = button.shortcut_text(ui.ctx().format_shortcut(shortcut));
         }
-        let tip = self.tooltip(ui.ctx());
-        ui.add_enabled(self.is_enabled(facts), button).on_hover_text(tip).clicked()
+        self.add(ui, facts, button)
     }
 
     /// Draws it as a button of the toolbar; true if it was pressed.
@@ -293,13 +305,21 @@ impl Command {
             Some(ticked) => egui::Button::new(text).selected(ticked),
             None => egui::Button::new(text),
         };
+        self.add(ui, facts, button)
+    }
+
+    fn add(self, ui: &mut egui::Ui, facts: &Facts, button: egui::Button<'_>) -> bool {
         let tip = self.tooltip(ui.ctx());
-        ui.add_enabled(self.is_enabled(facts), button).on_hover_text(&tip).on_disabled_hover_text(tip).clicked()
+        let why_not = self.why_not(facts);
+        let response = ui.add_enabled(why_not.is_none(), button);
+        let why_not = why_not.map_or_else(String::new, |why| format!("{tip}\nNot now: {why}"));
+        response.on_hover_text(tip).on_disabled_hover_text(why_not).clicked()
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::bars::MENUS;
     use super::*;
     use std::collections::HashMap;
 
@@ -307,7 +327,7 @@ mod tests {
     fn no_two_commands_share_a_key() {
         for os in [OperatingSystem::Nix, OperatingSystem::Windows, OperatingSystem::Mac] {
             let mut seen = HashMap::new();
-            for command in Command::ALL {
+            for &command in Command::ALL {
                 for key in command.keys(os) {
                     let before = seen.insert(key, command);
                     assert_eq!(before, None, "{key:?} runs {command:?} too");
@@ -322,6 +342,33 @@ mod tests {
             let (text, tip) = command.text_and_tip();
             assert!(!text.is_empty() && tip.len() > text.len() / 2, "{command:?}");
             assert!(!tip.ends_with('.'), "{command:?}: tips are phrases");
+        }
+    }
+
+    #[test]
+    fn every_command_is_listed_and_stands_in_one_menu() {
+        let source = include_str!("command.rs");
+        let body = source.split("pub(super) enum Command {").nth(1).expect("the enum");
+        let names = body.split('}').next().expect("its end").lines().map(|line| line.trim().trim_end_matches(','));
+        for name in names.filter(|name| !name.is_empty()) {
+            let name = name.split('(').next().expect("a first part");
+            let is_it = |c: &&Command| format!("{c:?}").split('(').next() == Some(name);
+            assert!(Command::ALL.iter().any(|c| is_it(&c)), "{name} is missing from the list of all");
+        }
+        let in_menus = || MENUS.iter().flat_map(|(_, groups)| groups.iter().flat_map(|group| group.iter()));
+        for command in Command::ALL {
+            assert_eq!(in_menus().filter(|c| *c == command).count(), 1, "{command:?} stands in one menu");
+        }
+        assert_eq!(in_menus().count(), Command::ALL.len(), "and nothing else does");
+    }
+
+    #[test]
+    fn what_cannot_be_used_says_why() {
+        let nothing = Facts { shows_mesh: true, is_solving: true, ..Facts::default() };
+        let refused: Vec<&Command> = Command::ALL.iter().filter(|c| !c.is_enabled(&nothing)).collect();
+        assert!(refused.len() > 8, "{refused:?}");
+        for command in refused {
+            assert!(command.why_not(&nothing).is_some_and(|why| !why.is_empty()), "{command:?}");
         }
     }
 }

@@ -3,10 +3,11 @@
 //! A path can always be typed. Where the desktop has a session bus its own file dialog is offered too, on a thread of
 //! its own, because it blocks; without a bus that dialog would answer "cancelled" at once.
 
-use super::command::Command;
+use super::command::{Command, Facts};
 use super::export_dialog::ExportDialog;
 use super::mesh_export::MeshExport;
 use super::outbox::{Action, Outbox};
+use super::palette::Palette;
 use super::plot_export::PlotExport;
 use super::result_export::ResultExport;
 use super::session::first_project;
@@ -37,6 +38,14 @@ pub(super) enum Next {
     Quit,
 }
 
+/// What a dialog may have to say of the window.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct About<'a> {
+    /// Name of the project.
+    pub(super) name: &'a str,
+    pub(super) facts: &'a Facts,
+}
+
 /// The dialog that is open; it stands before everything else.
 #[derive(Debug, Default)]
 pub(super) enum Dialog {
@@ -48,6 +57,7 @@ pub(super) enum Dialog {
     MeshExport(Box<MeshExport>),
     ResultExport(Box<ResultExport>),
     PlotExport(Box<PlotExport>),
+    Palette(Palette),
     Keys,
 }
 
@@ -210,7 +220,7 @@ pub(super) fn problem_with(path: &Path, saves: bool) -> Option<&'static str> {
 
 impl Dialog {
     /// Draws the dialog that is open, if any.
-    pub(super) fn ui(&mut self, ctx: &Context, name: &str, state: &mut UiState, out: &mut Outbox) {
+    pub(super) fn ui(&mut self, ctx: &Context, about: About<'_>, state: &mut UiState, out: &mut Outbox) {
         if matches!(self, Self::None) {
             return;
         }
@@ -220,11 +230,12 @@ impl Dialog {
             match self {
                 Self::None => true,
                 Self::Path(dialog) => dialog.ui(ui, out),
-                Self::Unsaved(next) => unsaved(ui, *next, name, out),
+                Self::Unsaved(next) => unsaved(ui, *next, about.name, out),
                 Self::Export(dialog) => dialog.ui(ui, state),
                 Self::MeshExport(dialog) => dialog.ui(ui, state, out),
                 Self::ResultExport(dialog) => dialog.ui(ui, state, out),
                 Self::PlotExport(dialog) => dialog.ui(ui, state, out),
+                Self::Palette(palette) => palette.ui(ui, about.facts, &state.recent_commands, out),
                 Self::Keys => keys(ui),
             }
         });
@@ -288,7 +299,7 @@ fn keys(ui: &mut Ui) -> bool {
                 ui.label(does);
                 ui.end_row();
             }
-            for command in Command::ALL {
+            for &command in Command::ALL {
                 let keys = command.keys(ui.ctx().os());
                 let Some(first) = keys.first() else { continue };
                 ui.label(RichText::new(ui.ctx().format_shortcut(first)).strong());

@@ -28,6 +28,7 @@ mod mesh_session;
 mod outbox;
 mod overlay;
 mod paint;
+mod palette;
 mod panel_antenna;
 mod panel_cage;
 mod panel_compensation;
@@ -46,6 +47,7 @@ mod readouts;
 mod result_export;
 mod scene;
 mod session;
+mod sides;
 mod smith;
 mod solve_session;
 mod status;
@@ -53,6 +55,8 @@ mod status;
 mod tests;
 #[cfg(test)]
 mod tests_mesh;
+#[cfg(test)]
+mod tests_shell;
 #[cfg(test)]
 mod tests_solve;
 mod theme;

@@ -246,6 +246,8 @@ pub(super) struct UiState {
     pub(super) guess_ohm: f64,
     /// Where the last file or folder was.
     pub(super) last_folder: Option<std::path::PathBuf>,
+    /// Names of the commands used last, newest first.
+    pub(super) recent_commands: Vec<String>,
     camera_kept: Option<SavedCamera>,
     pub(super) mesh: MeshUi,
     pub(super) solve: SolveUi,
@@ -280,6 +282,7 @@ impl Default for UiState {
             guess_freq_ghz: 11.0,
             guess_ohm: 50.0,
             last_folder: None,
+            recent_commands: Vec::new(),
             camera_kept: None,
             mesh: MeshUi::default(),
             solve: SolveUi::default(),
