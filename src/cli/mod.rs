@@ -17,7 +17,7 @@ mod info;
 mod mesh;
 mod new;
 mod pattern;
-mod plot;
+mod plot_files;
 mod progress;
 mod report;
 mod runs;

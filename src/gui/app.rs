@@ -148,6 +148,7 @@ impl App {
                 }
             }
             Action::RemoveRun(serial) => self.solve.remove(serial),
+            Action::SavePlot(kind) => self.ask_plot(kind),
             Action::Say(weight, text) => self.messages.say(weight, &text),
             Action::OpenPath(path) => self.open(&path),
             Action::SavePath(path) => {
@@ -247,6 +248,7 @@ impl App {
                     self.dialog = Dialog::ResultExport(Box::new(dialog));
                 }
             }
+            Command::SavePlot => self.ask_plot(None),
             Command::Palette => self.dialog = Dialog::Palette(Palette::default()),
             Command::Keys => self.dialog = Dialog::Keys,
             _ => self.run_view(ctx, command),

@@ -32,6 +32,7 @@ pub(super) enum Command {
     ShowResults,
     ShowPattern,
     ExportResults,
+    SavePlot,
     Fit,
     LookFrom(StandardView),
     Orthographic,
@@ -98,6 +99,7 @@ impl Command {
         Self::ShowResults,
         Self::ShowPattern,
         Self::ExportResults,
+        Self::SavePlot,
         Self::Fit,
         Self::LookFrom(StandardView::Front),
         Self::LookFrom(StandardView::Back),
@@ -152,6 +154,7 @@ impl Command {
             Self::ShowResults => ("Results", "Show reflection, Smith chart and figures of the runs below the view"),
             Self::ShowPattern => ("3-D pattern", "Draw the radiation pattern around the antenna"),
             Self::ExportResults => ("Export results…", "Write a run's reflection as a table or a Touchstone file"),
+            Self::SavePlot => ("Save plot…", "Save a plot as SVG, PNG or CSV, as it would be printed"),
             Self::Fit => ("Fit", "Show all of the antenna and its cage, or of the mesh"),
             Self::LookFrom(view) => match view {
                 StandardView::Front => ("Front", "Look along +y, x to the right"),
@@ -226,7 +229,7 @@ impl Command {
             Self::Palette => vec![command_shift(Key::P)],
             Self::Keys => vec![plain(Key::F1)],
             Self::ClearRecent | Self::Welcome | Self::Example(_) => Vec::new(),
-            Self::ResetAll | Self::CompensateNot | Self::ShowLog | Self::Theme(_) => Vec::new(),
+            Self::ResetAll | Self::CompensateNot | Self::SavePlot | Self::ShowLog | Self::Theme(_) => Vec::new(),
         }
     }
 
@@ -243,6 +246,9 @@ impl Command {
             Self::ExportMesh | Self::ShowMesh => (facts.has_mesh, "there is no mesh yet"),
             Self::Solve => (!facts.is_solving, "a run is under way"),
             Self::ExportResults => (facts.has_results, "there are no results yet"),
+            Self::SavePlot => {
+                (facts.has_results || facts.has_mesh, "there is nothing to plot: no results and no mesh yet")
+            }
             Self::ShowPattern => (facts.has_pattern, "no run with a pattern yet"),
             Self::BoxSelect | Self::ShowCage | Self::SeeThrough => {
                 (!facts.shows_mesh, "there is no cage in the view of the mesh")

@@ -9,6 +9,7 @@ use super::mesh_export::MeshExport;
 use super::notices;
 use super::outbox::{Action, Outbox};
 use super::palette::Palette;
+use super::plot_export::PlotExport;
 use super::recovery::Found;
 use super::result_export::ResultExport;
 use super::session::first_project;
@@ -76,6 +77,7 @@ pub(super) enum Dialog {
     Export(Box<ExportDialog>),
     MeshExport(Box<MeshExport>),
     ResultExport(Box<ResultExport>),
+    PlotExport(Box<PlotExport>),
     Palette(Palette),
     Keys,
     Welcome,
@@ -260,6 +262,7 @@ impl Dialog {
                 Self::Export(dialog) => dialog.ui(ui, state),
                 Self::MeshExport(dialog) => dialog.ui(ui, state, out),
                 Self::ResultExport(dialog) => dialog.ui(ui, state, out),
+                Self::PlotExport(dialog) => dialog.ui(ui, state, out),
                 Self::Palette(palette) => palette.ui(ui, about.facts, &state.recent_commands, out),
                 Self::Keys => keys(ui),
                 Self::Welcome => notices::welcome(ui, &state.recent_files, out),

@@ -2,6 +2,7 @@
 
 use super::command::Command;
 use super::dialogs::Next;
+use super::plots::PlotKind;
 use super::status::Weight;
 use crate::project::{Edit, PresetSpec, Project};
 use std::path::PathBuf;
@@ -37,6 +38,8 @@ pub(super) enum Action {
     ColorRun(u64, usize),
     /// Forgets a run.
     RemoveRun(u64),
+    /// Asks where to save a plot; the one on show where none is named.
+    SavePlot(Option<PlotKind>),
     /// Tells the user something.
     Say(Weight, String),
     /// Opens a project file.
