@@ -34,6 +34,7 @@ pub mod tlm;
 pub mod results;
 
 pub mod io;
+pub mod plot;
 pub mod project;
 #[cfg(feature = "gui")]
 pub mod render;

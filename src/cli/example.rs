@@ -3,11 +3,11 @@
 //! Everything lands under out/: the project, the export with certificate, the convergence plot, the study, and a
 //! picture of the viewport where there is a graphics adapter.
 
-use super::plot::{Axis, Figure, Panel, Point, Series, Style};
+use super::plot_files;
 use super::report::ExportReport;
-use super::study::palette;
 use crate::io::{self, ExportOptions};
 use crate::pipeline::{self, Deformed};
+use crate::plot::{Axis, Figure, Format, Panel, Point, Series, Style, palette};
 use crate::project::{BendPlane, CageSpec, PresetEntry, PresetSpec, Project, RuleSpec, file};
 use crate::task::Task;
 use anyhow::{Context, Result};
@@ -29,7 +29,7 @@ pub(super) fn run(draw: Draw<'_>, task: &Task) -> Result<()> {
     let dir = out.join("export");
     let export = ExportReport::new(&dir, &io::export(&deformed.surface(), &dir, &options)?);
     super::print(&super::deform::text(&project, &deformed, Some(&export)))?;
-    convergence(&deformed).write(out)?;
+    plot_files::write(&convergence(&deformed).into(), out, &Format::ALL)?;
     let picture = out.join("viewport.png");
     let mut written = vec!["example.json", "export/", "convergence.svg, .png and .csv"];
     match draw(&project, &deformed)? {

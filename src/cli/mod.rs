@@ -17,7 +17,7 @@ mod info;
 mod mesh;
 mod new;
 mod pattern;
-mod plot;
+mod plot_files;
 mod progress;
 mod report;
 mod runs;
@@ -41,6 +41,7 @@ const CANCELLED: u8 = 130;
 
 /// What was asked for on the command line.
 #[derive(Debug)]
+#[allow(clippy::large_enum_variant, reason = "made once")]
 pub enum Choice {
     /// The window, with a project if one was named.
     Window(Option<PathBuf>),

@@ -1,9 +1,9 @@
 //! What `solve` says and writes of the far field.
 
-use super::plot::{Curve, Dial, Polar};
-use super::study::palette;
+use super::plot_files;
 use crate::io::{csv, ffs};
 use crate::pipeline::Solved;
+use crate::plot::{Curve, Dial, Format, Polar, palette};
 use crate::results::{Cut, CutPlane, FarField};
 use crate::units::GHZ;
 use anyhow::Result;
@@ -139,16 +139,21 @@ pub(super) fn write(solved: &Solved, fields: &[&FarField], name: &str, dir: &Pat
     let sampled: Vec<FarField> = fields.iter().map(|f| f.resampled(FILE_GRID)).collect();
     ffs::write(&sampled, &dir.join("pattern.ffs"))?;
     let dials = cuts.iter().flat_map(|(freq, e, h)| [("E", e), ("H", h)].map(|(plane, cut)| dial(*freq, plane, cut)));
-    let polar =
-        Polar { name: "pattern_plot", title: format!("Directivity, {name}"), unit: "dBi", dials: dials.collect() };
-    polar.write(dir)?;
+    let polar = Polar {
+        name: "pattern_plot",
+        title: format!("Directivity, {name}"),
+        unit: "dBi",
+        depth: 40.0,
+        dials: dials.collect(),
+    };
+    plot_files::write(&polar.into(), dir, &[Format::Svg, Format::Png])?;
     let names = ["radiation.csv", "pattern.csv", "pattern.ffs", "pattern_plot.svg", "pattern_plot.png"];
     Ok(names.map(|n| dir.join(n).display().to_string()).into())
 }
 
 fn dial(freq: f64, plane: &str, cut: &Cut) -> Dial {
-    let curve = |name, color: usize, dashed, values: &[f64]| Curve {
-        name,
+    let curve = |name: &str, color: usize, dashed, values: &[f64]| Curve {
+        name: name.to_owned(),
         color: palette::DISTINCT[color],
         dashed,
         points: cut.psi.iter().copied().zip(values.iter().copied()).collect(),

@@ -2,11 +2,11 @@
 
 use super::args::SolveArgs;
 use super::pattern::{self, PatternReport};
-use super::plot::{Axis, Figure, Panel, Point, Series, Style};
+use super::plot_files;
 use super::runs::{self, Keep, Resume};
-use super::study::palette;
 use crate::io::{csv, touchstone};
 use crate::pipeline::{Solved, results_dir};
+use crate::plot::{Axis, Figure, Format, Panel, Point, Series, Style, palette};
 use crate::project::file;
 use crate::results::{FarField, Resonance};
 use crate::task::Task;
@@ -90,7 +90,7 @@ fn write(solved: &Solved, name: &str, dir: &Path) -> Result<Vec<String>> {
         columns: 1,
         x: Axis::linear("frequency (GHz)"),
     };
-    figure.write(dir)?;
+    plot_files::write(&figure.into(), dir, &Format::ALL)?;
     let names = ["s11.csv", "s11.s1p", "s11_plot.svg", "s11_plot.png", "s11_plot.csv"];
     Ok(names.map(|n| dir.join(n).display().to_string()).into())
 }

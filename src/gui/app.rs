@@ -1,32 +1,32 @@
 //! The window: collects replies, draws the panels, carries out what they ask for.
 
 use super::command::{Command, Facts};
-use super::dialogs::{Dialog, Next};
+use super::dialogs::{About, Dialog, Next};
+use super::disk::Disk;
 use super::export_dialog::ExportDialog;
-use super::field::Refused;
+use super::frame::set_scale;
 use super::mesh_export::MeshExport;
 use super::mesh_session::{MeshNews, MeshSession};
 use super::outbox::{Action, Outbox};
+use super::palette::Palette;
+use super::recovery::Recovery;
 use super::result_export::ResultExport;
 use super::session::{News, Session, first_project};
 use super::solve_session::{SolveNews, SolveSession};
-use super::status::{self, Messages, Weight};
+use super::status::{Messages, Weight};
 use super::theme;
 use super::ui_state::{RightTab, Tab, UiState};
-use super::viewport::{Sources, Viewport};
-use super::{bars, paint, panel_antenna, panel_cage, panel_compensation, panel_distortion, panel_mesh};
-use super::{panel_results, panel_solve};
+use super::viewport::Viewport;
+use super::{APP_ID, paint, palette};
 use crate::pipeline::mesh_job::MeshJob;
 use crate::pipeline::solve_job::SolveJob;
 use crate::pipeline::worker::Worker;
 use crate::project::{CompensationMode, Edit, PresetEntry, Settings};
 use crate::render::Projection;
-use egui::{CentralPanel, Frame, Panel, ScrollArea, Ui, ViewportCommand};
-use std::path::Path;
+use egui::{Rect, Ui, ViewportCommand};
+use std::path::{Path, PathBuf};
 
 const STATE_KEY: &str = "window";
-/// Widths of the side panels, points: all inputs fit, and 1280 points leave the view the larger half.
-const SIDE_WIDTHS: [f32; 2] = [300.0, 316.0];
 
 /// The window's application.
 #[derive(Debug)]
@@ -35,11 +35,19 @@ pub(super) struct App {
     pub(super) mesh: MeshSession,
     pub(super) solve: SolveSession,
     pub(super) state: UiState,
-    viewport: Viewport,
+    pub(super) viewport: Viewport,
     pub(super) dialog: Dialog,
     pub(super) messages: Messages,
+    /// Where the panels are, in the order in which a key goes through them.
+    pub(super) areas: Vec<Rect>,
+    pub(super) recovery: Recovery,
+    pub(super) disk: Disk,
+    /// Whether the window had the focus in the last frame.
+    pub(super) has_focus: bool,
+    /// Whether another program has changed the file and the user was not asked yet.
+    pub(super) asks_to_reload: bool,
     /// Whether the window may close without asking.
-    may_close: bool,
+    pub(super) may_close: bool,
     /// The window's title as last set.
     title: String,
 }
@@ -54,6 +62,10 @@ impl App {
         let mut state: UiState = cc.storage.and_then(|s| eframe::get_value(s, STATE_KEY)).unwrap_or_default();
         state.restore_camera();
         cc.egui_ctx.set_theme(state.theme);
+        // The keys are commands of ours, and the size is remembered with the rest.
+        cc.egui_ctx.options_mut(|options| options.zoom_with_keyboard = false);
+        let scale = state.scale;
+        set_scale(&cc.egui_ctx, &mut state, scale);
         let wake = || {
             let ctx = cc.egui_ctx.clone();
             move || ctx.request_repaint()
@@ -67,12 +79,21 @@ impl App {
             viewport: Viewport::default(),
             dialog: Dialog::None,
             messages: Messages::default(),
+            areas: Vec::new(),
+            recovery: Recovery::new(recovery_folder(cc)),
+            disk: Disk::spawn(wake()),
+            has_focus: true,
+            asks_to_reload: false,
             may_close: false,
             title: String::new(),
         };
         if let Some(path) = path {
             app.open(path);
+        } else if cc.storage.is_some() && app.state.recent_files.is_empty() && !app.state.is_welcomed {
+            app.state.is_welcomed = true;
+            app.dialog = Dialog::Welcome;
         }
+        app.offer_recovery();
         app
     }
 
@@ -82,6 +103,7 @@ impl App {
         Facts {
             can_undo: history.can_undo(),
             can_redo: history.can_redo(),
+            has_recent: !self.state.recent_files.is_empty(),
             has_selection: !self.state.selection.is_empty(),
             has_hand_edits: !project.hand_edits.is_empty(),
             has_mesh: self.mesh.shown().is_some(),
@@ -96,57 +118,12 @@ impl App {
             shows_cage: self.state.shows_cage,
             sees_through: self.state.sees_through,
             shows_log: self.state.shows_log,
+            shows_history: self.state.tab == Tab::History && self.state.shows_left,
+            shows_left: self.state.shows_left,
+            shows_right: self.state.shows_right,
             selects_by_box: self.state.selects_by_box,
             theme: Some(self.state.theme),
         }
-    }
-
-    fn side_panels(&mut self, ui: &mut Ui, facts: &Facts, out: &mut Outbox) {
-        let pose = self.session.pose().cloned();
-        Panel::left("left").default_size(SIDE_WIDTHS[0]).size_range(260.0..=420.0).show(ui, |ui| {
-            ui.add_space(4.0);
-            ui.horizontal(|ui| {
-                ui.selectable_value(&mut self.state.tab, Tab::Cage, "Cage").on_hover_text("Presets, cage and vertices");
-                let tip = "Dimensions and materials of the flat antenna";
-                ui.selectable_value(&mut self.state.tab, Tab::Antenna, "Antenna").on_hover_text(tip);
-            });
-            ui.separator();
-            ScrollArea::vertical().auto_shrink(false).id_salt(self.state.tab == Tab::Cage).show(ui, |ui| {
-                match self.state.tab {
-                    Tab::Antenna => panel_antenna::ui(ui, &self.session.project().antenna, &mut self.state, out),
-                    Tab::Cage => panel_cage::ui(ui, self.session.project(), pose.as_ref(), &mut self.state, out),
-                }
-            });
-        });
-        Panel::right("right").default_size(SIDE_WIDTHS[1]).size_range(280.0..=440.0).show(ui, |ui| {
-            ui.add_space(4.0);
-            ui.horizontal(|ui| {
-                let tip = "Distortion of the deformed antenna and its compensation";
-                ui.selectable_value(&mut self.state.right_tab, RightTab::Figures, "Deformation").on_hover_text(tip);
-                let tip = "The tetrahedral mesh of the antenna and the air around it";
-                ui.selectable_value(&mut self.state.right_tab, RightTab::Mesh, "Mesh").on_hover_text(tip);
-                let tip = "The field: reflection and radiation";
-                ui.selectable_value(&mut self.state.right_tab, RightTab::Solve, "Solve").on_hover_text(tip);
-            });
-            ui.separator();
-            let tab = self.state.right_tab;
-            ScrollArea::vertical().auto_shrink(false).id_salt(tab as u8).show(ui, |ui| match tab {
-                RightTab::Figures => {
-                    ui.heading("Distortion");
-                    panel_distortion::ui(ui, &self.session, &mut self.state);
-                    ui.add_space(6.0);
-                    ui.separator();
-                    ui.heading("Compensation");
-                    panel_compensation::ui(ui, &self.session, Refused(self.state.refused.as_ref()), out);
-                }
-                RightTab::Mesh => {
-                    panel_mesh::ui(ui, self.session.project(), &self.mesh, facts, &mut self.state, out);
-                }
-                RightTab::Solve => {
-                    panel_solve::ui(ui, self.session.project(), &mut self.solve, facts, &mut self.state, out);
-                }
-            });
-        });
     }
 
     pub(super) fn carry_out(&mut self, ctx: &egui::Context, action: Action) {
@@ -159,6 +136,7 @@ impl App {
             }
             Action::Cancel => self.session.cancel(),
             Action::Edit(place, edit) => self.edit(place, edit),
+            Action::GoTo(step) => self.session.go_to(step),
             Action::AddPreset(preset) => {
                 let index = self.session.project().presets.len();
                 let entry = PresetEntry { enabled: true, preset };
@@ -180,21 +158,21 @@ impl App {
                 }
             }
             Action::RemoveRun(serial) => self.solve.remove(serial),
+            Action::SavePlot(kind) => self.ask_plot(kind),
             Action::Say(weight, text) => self.messages.say(weight, &text),
             Action::OpenPath(path) => self.open(&path),
-            Action::SavePath(path) => {
-                let then = match &self.dialog {
-                    Dialog::Path(dialog) => dialog.then,
-                    _ => None,
-                };
-                if self.save(&path) {
-                    self.go_on(ctx, then);
-                }
-            }
+            Action::SavePath(path, then) => self.save(ctx, &path, then),
             Action::SaveThen(next) => self.save_then(ctx, Some(next)),
+            Action::SaveOver(path, then) => self.save_over(ctx, &path, then),
+            Action::AskSave(then) => self.ask_save(then),
+            Action::AskRecent(path) => self.ask_unsaved(ctx, Next::File(path)),
+            Action::Reload => self.reload(),
+            Action::Recover(index) => self.recover(ctx, index),
+            Action::DiscardFound(index) => self.discard_found(index),
             Action::AskOpen => self.ask_open(),
             Action::Start(project) => {
                 self.session.replace(*project, None);
+                self.disk.note(None);
                 self.forget_computed();
                 self.state.fit = true;
                 self.state.selection.clear();
@@ -215,12 +193,16 @@ impl App {
 
     fn run(&mut self, ctx: &egui::Context, command: Command) {
         let state = &mut self.state;
+        palette::note(&mut state.recent_commands, command);
         match command {
             Command::New => self.ask_unsaved(ctx, Next::New),
             Command::Open => self.ask_unsaved(ctx, Next::Open),
             Command::Quit => self.ask_unsaved(ctx, Next::Quit),
             Command::Save => self.save_then(ctx, None),
             Command::SaveAs => self.ask_save(None),
+            Command::ClearRecent => state.recent_files.clear(),
+            Command::Welcome => self.dialog = Dialog::Welcome,
+            Command::Example(example) => self.ask_unsaved(ctx, Next::Example(example)),
             Command::Export => {
                 let folder = self.folder().join(format!("{}-export", self.session.name()));
                 let finished = self.session.finished();
@@ -243,7 +225,7 @@ impl App {
             Command::Compensate => self.compensate(CompensationMode::Isometric),
             Command::CompensateNot => self.compensate(CompensationMode::None),
             Command::Mesh => {
-                state.right_tab = RightTab::Mesh;
+                (state.right_tab, state.shows_right) = (RightTab::Mesh, true);
                 self.mesh.start(self.session.project(), &state.mesh);
             }
             Command::ExportMesh => {
@@ -255,7 +237,7 @@ impl App {
             }
             Command::ShowMesh => state.show_mesh(!state.mesh.shows),
             Command::Solve => {
-                state.right_tab = RightTab::Solve;
+                (state.right_tab, state.shows_right) = (RightTab::Solve, true);
                 state.solve.shows_results = true;
                 self.solve.start(self.session.project(), &state.solve);
             }
@@ -270,22 +252,10 @@ impl App {
                     self.dialog = Dialog::ResultExport(Box::new(dialog));
                 }
             }
-            Command::Fit => state.fit = true,
-            Command::LookFrom(view) => state.camera.look_from(view),
-            Command::Orthographic => {
-                state.camera.projection = match state.camera.projection {
-                    Projection::Perspective => Projection::Orthographic,
-                    Projection::Orthographic => Projection::Perspective,
-                }
-            }
-            Command::ShowCage => state.shows_cage = !state.shows_cage,
-            Command::SeeThrough => state.sees_through = !state.sees_through,
-            Command::ShowLog => state.shows_log = !state.shows_log,
-            Command::Theme(theme) => {
-                state.theme = theme;
-                ctx.set_theme(theme);
-            }
+            Command::SavePlot => self.ask_plot(None),
+            Command::Palette => self.dialog = Dialog::Palette(Palette::default()),
             Command::Keys => self.dialog = Dialog::Keys,
+            _ => self.run_view(ctx, command),
         }
     }
 
@@ -336,16 +306,7 @@ impl App {
         if self.session.history().is_dirty() {
             self.dialog = Dialog::Unsaved(next);
         } else {
-            self.go_on(ctx, Some(next));
-        }
-    }
-
-    pub(super) fn go_on(&mut self, ctx: &egui::Context, next: Option<Next>) {
-        match next {
-            None => {}
-            Some(Next::New) => self.carry_out(ctx, Action::Start(Box::new(first_project()))),
-            Some(Next::Open) => self.ask_open(),
-            Some(Next::Quit) => self.carry_out(ctx, Action::CloseWindow),
+            self.carry_out(ctx, next.action());
         }
     }
 
@@ -373,7 +334,20 @@ impl App {
     }
 }
 
+/// Where unsaved work is kept: beside what the window remembers, so nowhere if it remembers nothing.
+fn recovery_folder(cc: &eframe::CreationContext<'_>) -> Option<PathBuf> {
+    cc.storage.and_then(|_| eframe::storage_dir(APP_ID)).map(|folder| folder.join("recovery"))
+}
+
 impl eframe::App for App {
+    fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
+        self.guard(ctx);
+    }
+
+    fn on_exit(&mut self) {
+        self.recovery.close(self.session.history().is_dirty() && !self.may_close);
+    }
+
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
         for news in self.session.sync() {
@@ -387,33 +361,14 @@ impl eframe::App for App {
         if !is_modal && !self.viewport.is_dragging() {
             out.actions.extend(Command::pressed(&ctx, &facts).into_iter().map(Action::Run));
         }
-        Panel::top("menus").show(ui, |ui| bars::menus(ui, &facts, &mut out));
-        Panel::top("tools").show(ui, |ui| bars::toolbar(ui, &facts, &mut out));
-        Panel::bottom("status").show(ui, |ui| {
-            status::ui(ui, &self.session, &self.messages, &mut self.state, &mut out);
-        });
-        if self.state.shows_log {
-            Panel::bottom("log").resizable(true).default_size(110.0).show(ui, |ui| self.messages.log(ui));
-        }
-        let mut raised = 0.0;
-        if self.state.solve.shows_results {
-            let panel = Panel::bottom("results").resizable(true).default_size(panel_results::HEIGHT);
-            let shown = panel.size_range(panel_results::HEIGHTS).show(ui, |ui| {
-                let (project, chosen) = (self.session.project(), &mut self.state.solve);
-                panel_results::ui(ui, project, &self.solve, &facts, chosen, &mut out);
-            });
-            raised = shown.response.rect.height();
-        }
-        self.side_panels(ui, &facts, &mut out);
-        let pose = self.session.pose().cloned();
-        CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
-            let mesh = self.mesh.shown().filter(|_| self.state.mesh.shows);
-            let solve = Some(&self.solve).filter(|_| self.state.solve.shows_pattern);
-            let sources = Sources { session: &self.session, pose: pose.as_ref(), mesh, solve };
-            self.viewport.ui(ui, sources, &mut self.state, &mut out);
-        });
-        let name = self.session.name();
-        self.dialog.ui(&ctx, &name, &mut self.state, &mut out);
+        let raised = self.panels(ui, &facts, &mut out);
+        let about = About {
+            name: &self.session.name(),
+            is_dirty: self.session.history().is_dirty(),
+            facts: &facts,
+            found: &self.recovery.found,
+        };
+        self.dialog.ui(&ctx, about, &mut self.state, &mut out);
         self.messages.show_toasts(&ctx, raised);
         for action in out.actions {
             self.carry_out(&ctx, action);

@@ -1,52 +1,123 @@
 //! Menus and toolbar.
 
 use super::command::{Command, Facts};
+use super::notices::recent_item;
 use super::outbox::{Action, Outbox};
-use egui::Ui;
+use crate::project::Example;
+use crate::render::StandardView;
+use Command as C;
+use egui::{ThemePreference, Ui};
+use std::path::PathBuf;
+
+/// A menu: its title, and its commands in groups with a line between them.
+pub(super) type Menu = (&'static str, &'static [&'static [Command]]);
+
+/// The menus from left to right. Every command stands in exactly one of them.
+pub(super) const MENUS: [Menu; 6] = [
+    (
+        "File",
+        &[
+            &[C::New, C::Open, C::Save, C::SaveAs, C::ClearRecent],
+            &[C::Export, C::ExportMesh, C::ExportResults, C::SavePlot],
+            &[C::Quit],
+        ],
+    ),
+    (
+        "Edit",
+        &[
+            &[C::Undo, C::Redo, C::ShowHistory],
+            &[C::SelectAll, C::SelectNone, C::BoxSelect],
+            &[C::ResetSelected, C::ResetAll],
+            &[C::Palette],
+        ],
+    ),
+    ("Antenna", &[&[C::Compensate, C::CompensateNot], &[C::Mesh, C::Solve]]),
+    (
+        "View",
+        &[
+            &[C::Fit],
+            &[
+                C::LookFrom(StandardView::Front),
+                C::LookFrom(StandardView::Back),
+                C::LookFrom(StandardView::Right),
+                C::LookFrom(StandardView::Left),
+                C::LookFrom(StandardView::Top),
+                C::LookFrom(StandardView::Bottom),
+                C::LookFrom(StandardView::Isometric),
+                C::Orthographic,
+            ],
+            &[C::ShowCage, C::SeeThrough, C::ShowMesh, C::ShowPattern],
+            &[C::ShowResults, C::ShowLog, C::ShowLeft, C::ShowRight, C::ResetLayout],
+            &[C::ZoomIn, C::ZoomOut, C::ZoomReset],
+            &[C::NextPanel, C::PreviousPanel],
+        ],
+    ),
+    (
+        "Theme",
+        &[&[C::Theme(ThemePreference::System), C::Theme(ThemePreference::Light), C::Theme(ThemePreference::Dark)]],
+    ),
+    (
+        "Help",
+        &[
+            &[C::Keys, C::Welcome],
+            &[
+                C::Example(Example::Flat),
+                C::Example(Example::BentH),
+                C::Example(Example::BentE),
+                C::Example(Example::Saddle),
+                C::Example(Example::Twist),
+            ],
+        ],
+    ),
+];
+
+/// The title of the menu that a command stands in.
+pub(super) fn menu_of(command: Command) -> &'static str {
+    let holds = |(_, groups): &&Menu| groups.iter().any(|group| group.contains(&command));
+    MENUS.iter().find(holds).map_or("", |(title, _)| title)
+}
 
 /// Draws the menus.
-pub(super) fn menus(ui: &mut Ui, facts: &Facts, out: &mut Outbox) {
-    use Command as C;
-    let all = |keep: fn(&Command) -> bool| C::ALL.into_iter().filter(keep);
-    let menu = |ui: &mut Ui, title: &str, commands: Vec<Command>, out: &mut Outbox| {
-        ui.menu_button(title, |ui| {
-            for command in commands {
-                if command.menu_item(ui, facts) {
-                    out.push(Action::Run(command));
-                }
-            }
-        });
-    };
+pub(super) fn menus(ui: &mut Ui, facts: &Facts, recent: &[PathBuf], out: &mut Outbox) {
     egui::MenuBar::new().ui(ui, |ui| {
-        menu(
-            ui,
-            "File",
-            vec![C::New, C::Open, C::Save, C::SaveAs, C::Export, C::ExportMesh, C::ExportResults, C::Quit],
-            out,
-        );
-        let edit = [C::Undo, C::Redo, C::SelectAll, C::SelectNone, C::BoxSelect, C::ResetSelected, C::ResetAll];
-        menu(ui, "Edit", edit.to_vec(), out);
-        menu(ui, "Antenna", vec![C::Compensate, C::CompensateNot, C::Mesh, C::Solve], out);
-        let mut view: Vec<Command> = vec![C::Fit];
-        view.extend(all(|c| matches!(c, C::LookFrom(_))));
-        view.extend([
-            C::Orthographic,
-            C::ShowCage,
-            C::SeeThrough,
-            C::ShowMesh,
-            C::ShowResults,
-            C::ShowPattern,
-            C::ShowLog,
-        ]);
-        menu(ui, "View", view, out);
-        menu(ui, "Theme", all(|c| matches!(c, C::Theme(_))).collect(), out);
-        menu(ui, "Help", vec![C::Keys], out);
+        for (title, groups) in MENUS {
+            ui.menu_button(title, |ui| {
+                for (number, group) in groups.iter().enumerate() {
+                    if number > 0 {
+                        ui.separator();
+                    }
+                    for &command in *group {
+                        if command == C::ClearRecent {
+                            recent_menu(ui, facts, recent, out);
+                        } else if command.menu_item(ui, facts) {
+                            out.push(Action::Run(command));
+                        }
+                    }
+                }
+            });
+        }
+    });
+}
+
+/// The files used last, and the command that forgets them.
+fn recent_menu(ui: &mut Ui, facts: &Facts, recent: &[PathBuf], out: &mut Outbox) {
+    ui.menu_button("Open recent", |ui| {
+        for path in recent {
+            if recent_item(ui, path) {
+                out.push(Action::AskRecent(path.clone()));
+            }
+        }
+        if !recent.is_empty() {
+            ui.separator();
+        }
+        if C::ClearRecent.menu_item(ui, facts) {
+            out.push(Action::Run(C::ClearRecent));
+        }
     });
 }
 
 /// Draws the buttons below the menus.
 pub(super) fn toolbar(ui: &mut Ui, facts: &Facts, out: &mut Outbox) {
-    use Command as C;
     let groups: [&[Command]; 7] = [
         &[C::Open, C::Save, C::Export],
         &[C::Undo, C::Redo],

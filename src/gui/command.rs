@@ -2,8 +2,9 @@
 //!
 //! Menus, toolbar and shortcuts all read this one list, so that none can say something the others do not.
 
+use crate::project::Example;
 use crate::render::StandardView;
-use egui::{Context, Key, KeyboardShortcut, Modifiers, ThemePreference, os::OperatingSystem};
+use egui::{Key, KeyboardShortcut, Modifiers, ThemePreference, os::OperatingSystem};
 
 /// Something the user can ask for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,6 +13,7 @@ pub(super) enum Command {
     Open,
     Save,
     SaveAs,
+    ClearRecent,
     Export,
     Quit,
     Undo,
@@ -30,14 +32,27 @@ pub(super) enum Command {
     ShowResults,
     ShowPattern,
     ExportResults,
+    SavePlot,
     Fit,
     LookFrom(StandardView),
     Orthographic,
     ShowCage,
     SeeThrough,
+    ShowHistory,
     ShowLog,
+    ShowLeft,
+    ShowRight,
+    ResetLayout,
+    ZoomIn,
+    ZoomOut,
+    ZoomReset,
+    NextPanel,
+    PreviousPanel,
     Theme(ThemePreference),
+    Palette,
     Keys,
+    Welcome,
+    Example(Example),
 }
 
 /// What decides whether a command can be used, and whether it is ticked.
@@ -46,6 +61,7 @@ pub(super) enum Command {
 pub(super) struct Facts {
     pub(super) can_undo: bool,
     pub(super) can_redo: bool,
+    pub(super) has_recent: bool,
     pub(super) has_selection: bool,
     pub(super) has_hand_edits: bool,
     pub(super) compensates: bool,
@@ -60,17 +76,21 @@ pub(super) struct Facts {
     pub(super) shows_cage: bool,
     pub(super) sees_through: bool,
     pub(super) shows_log: bool,
+    pub(super) shows_history: bool,
+    pub(super) shows_left: bool,
+    pub(super) shows_right: bool,
     pub(super) selects_by_box: bool,
     pub(super) theme: Option<ThemePreference>,
 }
 
 impl Command {
     /// All commands, in the order of the menus.
-    pub(super) const ALL: [Self; 38] = [
+    pub(super) const ALL: &'static [Self] = &[
         Self::New,
         Self::Open,
         Self::Save,
         Self::SaveAs,
+        Self::ClearRecent,
         Self::Export,
         Self::Quit,
         Self::Undo,
@@ -89,6 +109,7 @@ impl Command {
         Self::ShowResults,
         Self::ShowPattern,
         Self::ExportResults,
+        Self::SavePlot,
         Self::Fit,
         Self::LookFrom(StandardView::Front),
         Self::LookFrom(StandardView::Back),
@@ -100,11 +121,27 @@ impl Command {
         Self::Orthographic,
         Self::ShowCage,
         Self::SeeThrough,
+        Self::ShowHistory,
         Self::ShowLog,
+        Self::ShowLeft,
+        Self::ShowRight,
+        Self::ResetLayout,
+        Self::ZoomIn,
+        Self::ZoomOut,
+        Self::ZoomReset,
+        Self::NextPanel,
+        Self::PreviousPanel,
         Self::Theme(ThemePreference::System),
         Self::Theme(ThemePreference::Light),
         Self::Theme(ThemePreference::Dark),
+        Self::Palette,
         Self::Keys,
+        Self::Welcome,
+        Self::Example(Example::Flat),
+        Self::Example(Example::BentH),
+        Self::Example(Example::BentE),
+        Self::Example(Example::Saddle),
+        Self::Example(Example::Twist),
     ];
 
     /// The text in menus and on buttons, and what it does.
@@ -114,6 +151,7 @@ impl Command {
             Self::Open => ("Open…", "Open a project file"),
             Self::Save => ("Save", "Save the project file"),
             Self::SaveAs => ("Save as…", "Save the project under another name"),
+            Self::ClearRecent => ("Clear recent files", "Forget which files were used last; the files stay"),
             Self::Export => ("Export…", "Write the geometry with its certificate of no gaps"),
             Self::Quit => ("Quit", "Close the window"),
             Self::Undo => ("Undo", "Take back the last step"),
@@ -134,6 +172,7 @@ impl Command {
             Self::ShowResults => ("Results", "Show reflection, Smith chart and figures of the runs below the view"),
             Self::ShowPattern => ("3-D pattern", "Draw the radiation pattern around the antenna"),
             Self::ExportResults => ("Export results…", "Write a run's reflection as a table or a Touchstone file"),
+            Self::SavePlot => ("Save plot…", "Save a plot as SVG, PNG or CSV, as it would be printed"),
             Self::Fit => ("Fit", "Show all of the antenna and its cage, or of the mesh"),
             Self::LookFrom(view) => match view {
                 StandardView::Front => ("Front", "Look along +y, x to the right"),
@@ -147,11 +186,31 @@ impl Command {
             Self::Orthographic => ("Orthographic", "No perspective: equal lengths look equal"),
             Self::ShowCage => ("Cage", "Show the cage and its vertices"),
             Self::SeeThrough => ("See-through substrate", "Show the pin and the ground through the substrate"),
+            Self::ShowHistory => ("History", "List every step of the project; go back to any of them"),
             Self::ShowLog => ("Messages", "Show the messages since the program began"),
+            Self::ShowLeft => ("Left side", "Show the panels on the left of the view"),
+            Self::ShowRight => ("Right side", "Show the panels on the right of the view"),
+            Self::ResetLayout => {
+                ("Reset layout", "Put panels, tabs and sizes back to where they were at the first start")
+            }
+            Self::ZoomIn => ("Larger interface", "Make text and controls larger"),
+            Self::ZoomOut => ("Smaller interface", "Make text and controls smaller"),
+            Self::ZoomReset => ("Normal interface", "Text and controls in their normal size"),
+            Self::NextPanel => ("Next panel", "Give the keys to the next panel; Tab goes on within it"),
+            Self::PreviousPanel => ("Previous panel", "Give the keys to the panel before"),
             Self::Theme(ThemePreference::System) => ("As the system", "Light or dark as the desktop is"),
             Self::Theme(ThemePreference::Light) => ("Light", "Dark lettering on a light ground"),
             Self::Theme(ThemePreference::Dark) => ("Dark", "Light lettering on a dark ground"),
+            Self::Palette => ("Find a command…", "Search all commands by what they are called or do"),
             Self::Keys => ("Keys and mouse", "List what the keys and the mouse do"),
+            Self::Welcome => ("Welcome", "Examples and recent files to begin with"),
+            Self::Example(example) => match example {
+                Example::Flat => ("Flat antenna", "The paper's patch antenna as drawn, in a cage"),
+                Example::BentH => ("Bent, H-plane, R = 10 mm", "The width curves around a cylinder along y"),
+                Example::BentE => ("Bent, E-plane, R = 10 mm", "The resonant length curves around a cylinder along x"),
+                Example::Saddle => ("Saddle", "Curved in opposite ways along x and y"),
+                Example::Twist => ("Twist", "A half wave across the patch that turns along it"),
+            },
         }
     }
 
@@ -194,28 +253,49 @@ impl Command {
             Self::Orthographic => vec![plain(Key::Num5)],
             Self::ShowCage => vec![plain(Key::C)],
             Self::SeeThrough => vec![plain(Key::T)],
+            Self::ShowHistory => vec![command(Key::H)],
+            Self::ShowLeft => vec![plain(Key::F8)],
+            Self::ShowRight => vec![plain(Key::F9)],
+            Self::ZoomIn => vec![command(Key::Plus), command(Key::Equals)],
+            Self::ZoomOut => vec![command(Key::Minus)],
+            Self::ZoomReset => vec![command(Key::Num0)],
+            Self::NextPanel => vec![plain(Key::F6)],
+            Self::PreviousPanel => vec![KeyboardShortcut::new(Modifiers::SHIFT, Key::F6)],
+            Self::Palette => vec![command_shift(Key::P)],
             Self::Keys => vec![plain(Key::F1)],
-            Self::ResetAll | Self::CompensateNot | Self::ShowLog | Self::Theme(_) => Vec::new(),
+            Self::ResetLayout | Self::ClearRecent | Self::Welcome | Self::Example(_) => Vec::new(),
+            Self::ResetAll | Self::CompensateNot | Self::SavePlot | Self::ShowLog | Self::Theme(_) => Vec::new(),
         }
+    }
+
+    /// Why it cannot be used now; `None` if it can.
+    pub(super) fn why_not(self, facts: &Facts) -> Option<&'static str> {
+        let (is_possible, why) = match self {
+            Self::Undo => (facts.can_undo, "there is nothing to take back"),
+            Self::Redo => (facts.can_redo, "nothing was taken back"),
+            Self::ClearRecent => (facts.has_recent, "no file was used yet"),
+            Self::SelectNone => (facts.has_selection, "no vertex is selected"),
+            Self::ResetSelected if facts.has_hand_edits => (facts.has_selection, "no vertex is selected"),
+            Self::ResetSelected | Self::ResetAll => (facts.has_hand_edits, "no vertex was moved by hand"),
+            Self::CompensateNot => (facts.compensates, "there is no compensation"),
+            Self::ExportMesh | Self::ShowMesh => (facts.has_mesh, "there is no mesh yet"),
+            Self::Solve => (!facts.is_solving, "a run is under way"),
+            Self::ExportResults => (facts.has_results, "there are no results yet"),
+            Self::SavePlot => {
+                (facts.has_results || facts.has_mesh, "there is nothing to plot: no results and no mesh yet")
+            }
+            Self::ShowPattern => (facts.has_pattern, "no run with a pattern yet"),
+            Self::BoxSelect | Self::ShowCage | Self::SeeThrough => {
+                (!facts.shows_mesh, "there is no cage in the view of the mesh")
+            }
+            _ => return None,
+        };
+        (!is_possible).then_some(why)
     }
 
     /// Whether it can be used now.
     pub(super) fn is_enabled(self, facts: &Facts) -> bool {
-        match self {
-            Self::Undo => facts.can_undo,
-            Self::Redo => facts.can_redo,
-            Self::SelectNone => facts.has_selection,
-            Self::ResetSelected => facts.has_selection && facts.has_hand_edits,
-            Self::ResetAll => facts.has_hand_edits,
-            Self::CompensateNot => facts.compensates,
-            Self::ExportMesh | Self::ShowMesh => facts.has_mesh,
-            Self::Solve => !facts.is_solving,
-            Self::ExportResults => facts.has_results,
-            Self::ShowPattern => facts.has_pattern,
-            // There is no cage in the view of the mesh.
-            Self::BoxSelect | Self::ShowCage | Self::SeeThrough => !facts.shows_mesh,
-            _ => true,
-        }
+        self.why_not(facts).is_none()
     }
 
     /// Whether it is ticked; `None` for commands that are no switches.
@@ -227,75 +307,20 @@ impl Command {
             Self::ShowPattern => Some(facts.shows_pattern),
             Self::ShowCage => Some(facts.shows_cage),
             Self::SeeThrough => Some(facts.sees_through),
+            Self::ShowHistory => Some(facts.shows_history),
+            Self::ShowLeft => Some(facts.shows_left),
+            Self::ShowRight => Some(facts.shows_right),
             Self::ShowLog => Some(facts.shows_log),
             Self::BoxSelect => Some(facts.selects_by_box),
             Self::Theme(theme) => Some(facts.theme == Some(theme)),
             _ => None,
         }
     }
-
-    /// What its tooltip says: what it does and its keys.
-    pub(super) fn tooltip(self, ctx: &Context) -> String {
-        let (_, tip) = self.text_and_tip();
-        let keys: Vec<String> = self.keys(ctx.os()).iter().map(|k| ctx.format_shortcut(k)).collect();
-        if keys.is_empty() { tip.to_owned() } else { format!("{tip} ({})", keys.join(", ")) }
-    }
-
-    /// The commands whose keys were pressed in this frame, if they can be used; keys are consumed.
-    ///
-    /// Keys that mean something to a text field belong to it while one is being edited.
-    pub(super) fn pressed(ctx: &Context, facts: &Facts) -> Vec<Self> {
-        let os = ctx.os();
-        let typing = ctx.text_edit_focused();
-        let mut keys: Vec<(KeyboardShortcut, Self)> =
-            Self::ALL.iter().flat_map(|&c| c.keys(os).into_iter().map(move |k| (k, c))).collect();
-        // A shortcut matches with extra modifiers too, so the ones with more modifiers go first.
-        keys.sort_by_key(|(k, _)| std::cmp::Reverse(usize::from(k.modifiers.any()) + usize::from(k.modifiers.shift)));
-        // Letters and digits, and the keys by which text is selected, undone and redone.
-        let is_text = |k: &KeyboardShortcut| {
-            let edits_text = matches!(k.logical_key, Key::A | Key::Z | Key::Y);
-            (k.modifiers.is_none() && !matches!(k.logical_key, Key::F1 | Key::F5)) || edits_text
-        };
-        let mut found = Vec::new();
-        for (shortcut, command) in keys {
-            if !(typing && is_text(&shortcut)) && ctx.input_mut(|i| i.consume_shortcut(&shortcut)) {
-                found.push(command);
-            }
-        }
-        found.retain(|c| c.is_enabled(facts));
-        found
-    }
-
-    /// Draws it as a line of a menu; true if it was chosen.
-    pub(super) fn menu_item(self, ui: &mut egui::Ui, facts: &Facts) -> bool {
-        let (text, _) = self.text_and_tip();
-        let keys = self.keys(ui.ctx().os());
-        let mut button = match self.is_ticked(facts) {
-            Some(ticked) => egui::Button::selectable(ticked, text),
-            None => egui::Button::new(text),
-        };
-        if let Some(shortcut) = keys.first() {
-            button = button.shortcut_text(ui.ctx().format_shortcut(shortcut));
-        }
-        let tip = self.tooltip(ui.ctx());
-        ui.add_enabled(self.is_enabled(facts), button).on_hover_text(tip).clicked()
-    }
-
-    /// Draws it as a button of the toolbar; true if it was pressed.
-    pub(super) fn tool_button(self, ui: &mut egui::Ui, facts: &Facts) -> bool {
-        let (text, _) = self.text_and_tip();
-        let text = text.trim_end_matches('…');
-        let button = match self.is_ticked(facts) {
-            Some(ticked) => egui::Button::new(text).selected(ticked),
-            None => egui::Button::new(text),
-        };
-        let tip = self.tooltip(ui.ctx());
-        ui.add_enabled(self.is_enabled(facts), button).on_hover_text(&tip).on_disabled_hover_text(tip).clicked()
-    }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::bars::MENUS;
     use super::*;
     use std::collections::HashMap;
 
@@ -303,7 +328,7 @@ mod tests {
     fn no_two_commands_share_a_key() {
         for os in [OperatingSystem::Nix, OperatingSystem::Windows, OperatingSystem::Mac] {
             let mut seen = HashMap::new();
-            for command in Command::ALL {
+            for &command in Command::ALL {
                 for key in command.keys(os) {
                     let before = seen.insert(key, command);
                     assert_eq!(before, None, "{key:?} runs {command:?} too");
@@ -318,6 +343,33 @@ mod tests {
             let (text, tip) = command.text_and_tip();
             assert!(!text.is_empty() && tip.len() > text.len() / 2, "{command:?}");
             assert!(!tip.ends_with('.'), "{command:?}: tips are phrases");
+        }
+    }
+
+    #[test]
+    fn every_command_is_listed_and_stands_in_one_menu() {
+        let source = include_str!("command.rs");
+        let body = source.split("pub(super) enum Command {").nth(1).expect("the enum");
+        let names = body.split('}').next().expect("its end").lines().map(|line| line.trim().trim_end_matches(','));
+        for name in names.filter(|name| !name.is_empty()) {
+            let name = name.split('(').next().expect("a first part");
+            let is_it = |c: &&Command| format!("{c:?}").split('(').next() == Some(name);
+            assert!(Command::ALL.iter().any(|c| is_it(&c)), "{name} is missing from the list of all");
+        }
+        let in_menus = || MENUS.iter().flat_map(|(_, groups)| groups.iter().flat_map(|group| group.iter()));
+        for command in Command::ALL {
+            assert_eq!(in_menus().filter(|c| *c == command).count(), 1, "{command:?} stands in one menu");
+        }
+        assert_eq!(in_menus().count(), Command::ALL.len(), "and nothing else does");
+    }
+
+    #[test]
+    fn what_cannot_be_used_says_why() {
+        let nothing = Facts { shows_mesh: true, is_solving: true, ..Facts::default() };
+        let refused: Vec<&Command> = Command::ALL.iter().filter(|c| !c.is_enabled(&nothing)).collect();
+        assert!(refused.len() > 8, "{refused:?}");
+        for command in refused {
+            assert!(command.why_not(&nothing).is_some_and(|why| !why.is_empty()), "{command:?}");
         }
     }
 }

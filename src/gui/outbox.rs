@@ -2,12 +2,14 @@
 
 use super::command::Command;
 use super::dialogs::Next;
+use super::plots::PlotKind;
 use super::status::Weight;
 use crate::project::{Edit, PresetSpec, Project};
 use std::path::PathBuf;
 
 /// A wish, carried out after all panels are drawn.
 #[derive(Clone, Debug)]
+#[allow(clippy::large_enum_variant, reason = "a few per frame")]
 pub(super) enum Action {
     /// A gesture begins: what follows is one undo step.
     Begin,
@@ -17,6 +19,8 @@ pub(super) enum Action {
     End,
     /// The gesture is called off.
     Cancel,
+    /// Goes to a step of the history, by its number.
+    GoTo(u64),
     /// A command.
     Run(Command),
     /// Adds a preset at the end of the stack.
@@ -35,16 +39,30 @@ pub(super) enum Action {
     ColorRun(u64, usize),
     /// Forgets a run.
     RemoveRun(u64),
+    /// Asks where to save a plot; the one on show where none is named.
+    SavePlot(Option<PlotKind>),
     /// Tells the user something.
     Say(Weight, String),
     /// Opens a project file.
     OpenPath(PathBuf),
-    /// Saves to a project file.
-    SavePath(PathBuf),
+    /// Saves to a project file, and goes on.
+    SavePath(PathBuf, Option<Next>),
     /// Replaces the project by another one that has no file yet.
     Start(Box<Project>),
     /// Saves, and goes on with what was asked for.
     SaveThen(Next),
+    /// Saves to a file although another program has changed it, and goes on.
+    SaveOver(PathBuf, Option<Next>),
+    /// Asks for the file to save to, and goes on.
+    AskSave(Option<Next>),
+    /// Opens a project file, asking about unsaved changes first.
+    AskRecent(PathBuf),
+    /// Takes over what another program wrote to the open file.
+    Reload,
+    /// Opens unsaved work that was found, by its place in the list.
+    Recover(usize),
+    /// Deletes unsaved work that was found, by its place in the list.
+    DiscardFound(usize),
     /// Asks for the file to open.
     AskOpen,
     /// Closes the window without asking again.

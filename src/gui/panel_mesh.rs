@@ -5,6 +5,8 @@ use super::field::rows;
 use super::mesh_session::{MeshSession, ShownMesh, density_text, grouped, has_cylinder, metal_text, shape_text};
 use super::outbox::{Action, Outbox};
 use super::panel_distortion::ROW_HEIGHT;
+use super::plot_export;
+use super::plots::PlotKind;
 use super::theme::Tokens;
 use super::ui_state::{MeshPaint, MeshUi, UiState};
 use crate::pipeline::{Density, Shape};
@@ -68,7 +70,7 @@ pub(super) fn ui(
     heading(ui, "Result");
     results(ui, shown);
     heading(ui, "Cells by their smallest dihedral angle");
-    histogram(ui, &shown.ready.meshed.quality.whole);
+    histogram(ui, &shown.ready.meshed.quality.whole, out);
     heading(ui, "Worst cells");
     worst(ui, shown, state);
 }
@@ -232,7 +234,7 @@ fn results(ui: &mut Ui, shown: &ShownMesh) {
     );
 }
 
-fn histogram(ui: &mut Ui, cells: &CellStatistics) {
+fn histogram(ui: &mut Ui, cells: &CellStatistics, out: &mut Outbox) {
     let width = BIN_WIDTH.to_degrees();
     let accent = Tokens::here(ui).accent;
     let bar = |(k, &count): (usize, &usize)| {
@@ -257,6 +259,7 @@ fn histogram(ui: &mut Ui, cells: &CellStatistics) {
         .show_x(false)
         .show_y(false)
         .show(ui, |plot| plot.bar_chart(BarChart::new("cells", bars).color(accent)));
+    plot_export::menu(&plot.response, PlotKind::MeshAngles, out);
     let Some(pointer) = plot.response.hover_pos() else { return };
     let bin = (plot.transform.value_from_position(pointer).x / width).max(0.0) as usize;
     if let Some(&count) = cells.histogram.get(bin) {

@@ -46,13 +46,13 @@ pub(super) fn ui(
             let side = plots.height().min(0.45 * plots.width());
             let (left, right) = plots.split_left_right_at_x(plots.right() - side);
             let left = left.with_max_x(left.right() - GAP);
-            part(ui, left, "curves", &mut |ui| plot_s11::ui(ui, &traces, chosen.curve));
-            part(ui, right, "smith", &mut |ui| smith::ui(ui, &traces));
+            part(ui, left, "curves", &mut |ui| plot_s11::ui(ui, &traces, chosen.curve, out));
+            part(ui, right, "smith", &mut |ui| smith::ui(ui, &traces, out));
         }
         ResultTab::Pattern => {
             let (left, right) = plots.split_left_right_at_x(plots.center().x);
             for (k, rect) in [left, right].into_iter().enumerate() {
-                part(ui, rect, ["E plane", "H plane"][k], &mut |ui| polar::ui(ui, solve, k, chosen));
+                part(ui, rect, ["E plane", "H plane"][k], &mut |ui| polar::ui(ui, solve, k, chosen, out));
             }
         }
     }
@@ -81,8 +81,10 @@ fn header(ui: &mut Ui, project: &Project, solve: &SolveSession, facts: &Facts, c
             if symbol_button(ui, "✖", "Close the results", true) {
                 out.push(Action::Run(Command::ShowResults));
             }
-            if Command::ExportResults.tool_button(ui, facts) {
-                out.push(Action::Run(Command::ExportResults));
+            for command in [Command::ExportResults, Command::SavePlot] {
+                if command.tool_button(ui, facts) {
+                    out.push(Action::Run(command));
+                }
             }
             ui.separator();
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {

@@ -1,5 +1,8 @@
 //! The plot of S11 over frequency: magnitude in dB with the -10 dB line and its markers, or phase.
 
+use super::outbox::Outbox;
+use super::plot_export;
+use super::plots::PlotKind;
 use super::theme::Tokens;
 use super::trace::Trace;
 use super::ui_state::Curve;
@@ -19,7 +22,7 @@ const JUMP: f64 = 180.0;
 const LABEL_SPACING: egui::Rangef = egui::Rangef { min: 14.0, max: 22.0 };
 
 /// Draws the plot into all the room there is.
-pub(super) fn ui(ui: &mut Ui, traces: &[Trace<'_>], curve: Curve) {
+pub(super) fn ui(ui: &mut Ui, traces: &[Trace<'_>], curve: Curve, out: &mut Outbox) {
     let tokens = Tokens::here(ui);
     let (name, ends) = match curve {
         Curve::Magnitude => ("|S11| (dB)", [LOWEST, 0.0]),
@@ -63,6 +66,8 @@ pub(super) fn ui(ui: &mut Ui, traces: &[Trace<'_>], curve: Curve) {
         }
     });
     let response = shown.response;
+    let kind = if curve == Curve::Phase { PlotKind::Phase } else { PlotKind::Magnitude };
+    plot_export::menu(&response, kind, out);
     let what = format!("Plot of {name} over frequency: {} curves", traces.len());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &what));
     let Some(pointer) = response.hover_pos() else { return };

@@ -1,6 +1,9 @@
 //! The polar plot of a cut through the far field: directivity in dBi over the angle from broadside.
 
+use super::outbox::Outbox;
 use super::panel_results::square;
+use super::plot_export;
+use super::plots::PlotKind;
 use super::solve_session::{FinishedRun, SolveSession};
 use super::theme::Tokens;
 use super::ui_state::{Polarization, SolveUi};
@@ -69,15 +72,16 @@ impl Dial {
 }
 
 /// Draws the cut `plane` (0: E, 1: H) of all runs on show.
-pub(super) fn ui(ui: &mut Ui, solve: &SolveSession, plane: usize, chosen: &SolveUi) {
+pub(super) fn ui(ui: &mut Ui, solve: &SolveSession, plane: usize, chosen: &SolveUi, out: &mut Outbox) {
     let area = ui.available_rect_before_wrap();
     let name = ["E plane (y z)", "H plane (x z)"][plane];
-    let response = ui.allocate_rect(area, Sense::hover());
+    let response = ui.allocate_rect(area, Sense::click());
     let freq = frequency(solve, chosen);
     let found: Vec<(&FinishedRun, &Pattern)> =
         solve.shown().filter_map(|run| Some((run, pattern(run, freq?)?))).collect();
     let what = format!("Polar plot of the {name}: {} runs", found.len());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &what));
+    plot_export::menu(&response, PlotKind::Cuts, out);
     let tokens = Tokens::here(ui);
     let painter = ui.painter().with_clip_rect(area);
     if found.is_empty() {

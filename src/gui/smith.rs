@@ -1,14 +1,14 @@
 //! The Smith chart: circles of constant resistance and reactance in the unit disc, curves, and what the pointer is at.
 
+use super::outbox::Outbox;
+use super::plot_export;
+use super::plots::PlotKind;
 use super::theme::Tokens;
 use super::trace::{Trace, ohms};
+use crate::plot::{MARKS, arc, reflection};
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, RichText, Sense, Stroke, Ui, pos2, vec2};
 use nalgebra::Complex;
 
-/// Resistances and reactances that are drawn, parts of the reference.
-const MARKS: [f64; 5] = [0.2, 0.5, 1.0, 2.0, 5.0];
-/// Points of an arc.
-const N_ARC: u8 = 48;
 /// Room around the disc for its lettering, points.
 const MARGIN: f32 = 24.0;
 /// How far from a curve the pointer still reads it, points.
@@ -27,25 +27,13 @@ impl Disc {
     }
 }
 
-/// The reflection of an impedance relative to the reference.
-fn reflection(z: Complex<f64>) -> Complex<f64> {
-    (z - 1.0) / (z + 1.0)
-}
-
-/// The part of a reflection's line inside the disc where the resistance or the reactance is constant.
-///
-/// The other one runs through all values that passive loads have, so that nothing lies outside of the disc.
-fn arc(at: impl Fn(f64) -> Complex<f64>) -> Vec<Complex<f64>> {
-    // From 0 to infinity, evenly in reflection.
-    (0..=N_ARC).map(|k| f64::from(k) / f64::from(N_ARC)).map(|t| reflection(at(t / (1.0 - t).max(1e-9)))).collect()
-}
-
 /// Draws the chart into all the room there is.
-pub(super) fn ui(ui: &mut Ui, traces: &[Trace<'_>]) {
+pub(super) fn ui(ui: &mut Ui, traces: &[Trace<'_>], out: &mut Outbox) {
     let rect = ui.available_rect_before_wrap();
-    let response = ui.allocate_rect(rect, Sense::hover());
+    let response = ui.allocate_rect(rect, Sense::click());
     let what = format!("Smith chart: {} curves", traces.len());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &what));
+    plot_export::menu(&response, PlotKind::Smith, out);
     let tokens = Tokens::here(ui);
     let disc = Disc { center: rect.center(), radius: (rect.size().min_elem() / 2.0 - MARGIN).max(10.0) };
     let painter = ui.painter().with_clip_rect(rect);
@@ -129,20 +117,6 @@ fn read_out(
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn lines_of_constant_impedance_stay_in_the_disc_and_meet_at_its_right() {
-        for mark in MARKS {
-            for line in [arc(|x| Complex::new(mark, -x)), arc(|r| Complex::new(r, mark))] {
-                assert!(line.iter().all(|g| g.norm() < 1.0 + 1e-12), "{mark}: inside");
-                assert!((line[usize::from(N_ARC)] - 1.0).norm() < 1e-6, "{mark}: an open end");
-            }
-            // The circle of resistance r has its center at r / (1 + r).
-            let center = Complex::from(mark / (1.0 + mark));
-            let off = |g: &Complex<f64>| ((g - center).norm() - 1.0 / (1.0 + mark)).abs();
-            assert!(arc(|x| Complex::new(mark, x)).iter().all(|g| off(g) < 1e-12), "{mark}: a circle");
-        }
-    }
 
     #[test]
     fn a_match_is_in_the_middle_and_a_coil_above() {

@@ -287,7 +287,7 @@ fn results_are_kept_beside_the_project_and_shown_when_it_is_opened_again() {
         window.state_mut().carry_out(&ctx, action);
         window.run_steps(2);
     };
-    carry_out(&mut window, Action::SavePath(path.clone()));
+    carry_out(&mut window, Action::SavePath(path.clone(), None));
     run(&mut window, Command::New);
     assert!(window.state().solve.runs().is_empty(), "another project");
     carry_out(&mut window, Action::OpenPath(path.clone()));
@@ -398,4 +398,28 @@ fn the_pattern_is_seen_in_the_picture() {
     window.run_steps(3);
     let after = greens(&mut window);
     assert!(after > before + 2000, "{before} texels of green before, {after} with the pattern");
+}
+
+#[test]
+fn every_plot_is_saved_in_every_form_from_its_menu() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut window = solved();
+    window.state_mut().session.path = Some(folder.path().join("two.json"));
+    window.get_by_label("Smith chart: 2 curves").click_secondary();
+    window.run_steps(3);
+    window.get_by_label("Save plot…").click();
+    lay_out(&mut window);
+    window.get_all_by_label("Save").last().expect("the button of the dialog").click();
+    window.run_steps(3);
+    let svg = std::fs::read_to_string(folder.path().join("two-smith.svg")).expect("written beside the project");
+    assert!(svg.contains("Reflection, two") && svg.contains("Flat") && svg.contains("R 10 H, raw"), "both runs");
+    window.state_mut().state.solve.tab = ResultTab::Pattern;
+    run(&mut window, Command::SavePlot);
+    lay_out(&mut window);
+    window.get_by_label("CSV").click();
+    window.run_steps(2);
+    window.get_all_by_label("Save").last().expect("the button of the dialog").click();
+    window.run_steps(3);
+    let csv = std::fs::read_to_string(folder.path().join("two-pattern.csv")).expect("the plot on show");
+    assert!(csv.starts_with("dial,curve,angle_deg,value_dBi") && csv.lines().count() > 700, "its numbers: {csv:.200}");
 }

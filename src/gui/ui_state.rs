@@ -6,6 +6,10 @@ use crate::tet::Metal;
 use egui::ThemePreference;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+/// Files remembered as used last: more are no menu any more.
+const MAX_RECENT_FILES: usize = 10;
 
 /// Which tab the left panel shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -15,6 +19,8 @@ pub(super) enum Tab {
     /// Cage, presets, hand edits.
     #[default]
     Cage,
+    /// Steps of the project's history.
+    History,
 }
 
 /// What is painted on the antenna.
@@ -236,6 +242,10 @@ pub(super) struct UiState {
     pub(super) heat: Heat,
     /// Half range of the colour bar in percent, where the user fixed it.
     pub(super) heat_range: Option<f32>,
+    /// Size of the interface, as a factor.
+    pub(super) scale: f32,
+    pub(super) shows_left: bool,
+    pub(super) shows_right: bool,
     pub(super) shows_cage: bool,
     pub(super) sees_through: bool,
     pub(super) shows_log: bool,
@@ -244,8 +254,17 @@ pub(super) struct UiState {
     /// Wanted frequency and input resistance of the first guess.
     pub(super) guess_freq_ghz: f64,
     pub(super) guess_ohm: f64,
+    /// Name being typed for the substrate's values.
+    #[serde(skip)]
+    pub(super) material_name: String,
     /// Where the last file or folder was.
-    pub(super) last_folder: Option<std::path::PathBuf>,
+    pub(super) last_folder: Option<PathBuf>,
+    /// Files opened or saved last, newest first.
+    pub(super) recent_files: Vec<PathBuf>,
+    /// Whether the welcome was shown.
+    pub(super) is_welcomed: bool,
+    /// Names of the commands used last, newest first.
+    pub(super) recent_commands: Vec<String>,
     camera_kept: Option<SavedCamera>,
     pub(super) mesh: MeshUi,
     pub(super) solve: SolveUi,
@@ -273,13 +292,20 @@ impl Default for UiState {
             theme: ThemePreference::System,
             heat: Heat::None,
             heat_range: None,
+            scale: 1.0,
+            shows_left: true,
+            shows_right: true,
             shows_cage: true,
             sees_through: false,
             shows_log: false,
             equal_padding: true,
             guess_freq_ghz: 11.0,
             guess_ohm: 50.0,
+            material_name: String::new(),
             last_folder: None,
+            recent_files: Vec::new(),
+            is_welcomed: false,
+            recent_commands: Vec::new(),
             camera_kept: None,
             mesh: MeshUi::default(),
             solve: SolveUi::default(),
@@ -293,6 +319,15 @@ impl Default for UiState {
 }
 
 impl UiState {
+    /// Notes that a file was opened or saved.
+    pub(super) fn note_recent(&mut self, path: &Path) {
+        // Where the program starts next time is not known.
+        let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        self.recent_files.retain(|other| *other != path);
+        self.recent_files.insert(0, path);
+        self.recent_files.truncate(MAX_RECENT_FILES);
+    }
+
     /// Shows the mesh or the antenna; each keeps its own camera, and is fitted when it is shown first.
     pub(super) fn show_mesh(&mut self, shows: bool) {
         if std::mem::replace(&mut self.mesh.shows, shows) != shows {

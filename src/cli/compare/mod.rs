@@ -10,11 +10,11 @@ mod cases;
 mod report;
 
 use super::args::CompareArgs;
-use super::plot::{Axis, Figure, Panel, Point, Series, Style};
+use super::plot_files;
 use super::runs::{self, Keep, Resume};
-use super::study::palette;
 use crate::io::{touchstone, write_atomic};
 use crate::pipeline::{Job, PipelineError, Stored, results_dir};
+use crate::plot::{Axis, Figure, Format, Panel, Point, Series, Style, palette};
 use crate::project::file;
 use crate::task::Task;
 use crate::units::GHZ;
@@ -107,7 +107,7 @@ fn write(group: &Group, runs: &[(&Variant, Result<Stored, String>)], out: &Path)
         columns: 1,
         x: Axis::linear("frequency (GHz)"),
     };
-    figure.write(out)?;
+    plot_files::write(&figure.into(), out, &Format::ALL)?;
     files.extend(["svg", "png", "csv"].map(|extension| format!("{}.{extension}", group.name)));
     Ok(files)
 }

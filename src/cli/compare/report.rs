@@ -1,9 +1,9 @@
 //! The table of a comparison.
 
-use super::super::plot::quoted;
 use super::super::report::{percent, table};
 use super::cases::{Group, Variant};
 use crate::pipeline::Stored;
+use crate::plot::quoted;
 use crate::units::GHZ;
 use serde::Serialize;
 use std::path::Path;

@@ -1,11 +1,11 @@
 //! The paper's figures from the sweep: what is plotted against what. rho is drawn in percent.
 
-use super::super::plot::{Axis, Figure, Panel, Point, Series, Style};
 use super::bends::{
     COMPENSATED_PADDINGS_MM, Case, Found, Method, ORDERS, PADDINGS_MM, RADII_MM, RULES, SEGMENTS, Sweep, USUAL_SEGMENTS,
 };
-use super::palette::{DISTINCT, ORDERED, REFERENCE};
 use crate::cage::BendRule;
+use crate::plot::palette::{DISTINCT, ORDERED, REFERENCE};
+use crate::plot::{Axis, Figure, Panel, Point, Series, Style};
 use crate::units::to_mm;
 
 /// Padding of figures that show one, mm.

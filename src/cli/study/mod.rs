@@ -8,11 +8,11 @@
 
 mod bends;
 mod figures;
-pub(super) mod palette;
 
 use super::args::StudyArgs;
-use super::plot::quoted;
+use super::plot_files;
 use crate::io::write_atomic;
+use crate::plot::{Format, quoted};
 use crate::task::Task;
 use anyhow::{Context, Result};
 use bends::{Compensation, Found, Method, RADII_MM, RULES, Raw, Sweep};
@@ -74,8 +74,8 @@ pub(super) fn write(out: &Path, task: &Task) -> Result<Report> {
     }
     for figure in figures::all(&sweep) {
         task.check()?;
-        figure.write(out)?;
         files.extend(["csv", "svg", "png"].map(|extension| format!("{}.{extension}", figure.name)));
+        plot_files::write(&figure.into(), out, &Format::ALL)?;
     }
     Ok(Report {
         dir: out.display().to_string(),

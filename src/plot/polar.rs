@@ -1,64 +1,62 @@
 //! Patterns over an angle: dials side by side with one scale and one legend.
 //!
-//! Zero is up, positive angles run to the right; the radius is in decibels, from [`DEPTH`] below the rim at the center.
+//! Zero is up, positive angles run to the right; the radius is in decibels, from a chosen depth below the rim at the center.
 
 use super::canvas::{Anchor, Canvas};
-use super::layout::{GRID_LINE, HEADING, INK, PAPER, SOFT, TICK, TITLE};
-use super::{Drawing, GRID};
-use anyhow::Result;
+use super::layout::{GRID_LINE, HEADING, INK, LEGEND_ROW, PAPER, SAMPLE, SOFT, TICK, TITLE, legend_width};
+use super::{Drawing, GRID, PlotError, quoted};
 use plotters::prelude::DrawingBackend;
-use std::path::Path;
 
 /// A figure of dials.
-pub(in crate::cli) struct Polar {
+#[derive(Clone, Debug, PartialEq)]
+pub struct Polar {
     /// Stem of the files.
-    pub(in crate::cli) name: &'static str,
-    pub(in crate::cli) title: String,
+    pub name: &'static str,
+    /// Heading.
+    pub title: String,
     /// Unit of the values, written at the scale.
-    pub(in crate::cli) unit: &'static str,
+    pub unit: &'static str,
+    /// Decibels from the rim to the center.
+    pub depth: f64,
     /// Two to a row.
-    pub(in crate::cli) dials: Vec<Dial>,
+    pub dials: Vec<Dial>,
 }
 
 /// One dial.
-pub(in crate::cli) struct Dial {
-    pub(in crate::cli) title: String,
-    pub(in crate::cli) curves: Vec<Curve>,
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dial {
+    /// Heading.
+    pub title: String,
+    /// Its lines.
+    pub curves: Vec<Curve>,
 }
 
 /// One line.
-pub(in crate::cli) struct Curve {
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
     /// Name in the legend, which the first dial gives.
-    pub(in crate::cli) name: &'static str,
-    pub(in crate::cli) color: [u8; 3],
+    pub name: String,
+    /// Red, green, blue.
+    pub color: [u8; 3],
     /// A dashed line: drawn over others that it may hide.
-    pub(in crate::cli) dashed: bool,
+    pub dashed: bool,
     /// Angle, rad, and value, dB.
-    pub(in crate::cli) points: Vec<(f64, f64)>,
+    pub points: Vec<(f64, f64)>,
 }
 
-/// Decibels from the rim to the center.
-const DEPTH: f64 = 40.0;
 /// Decibels between two circles.
 const RING: f64 = 10.0;
 const RADIUS: f64 = 150.0;
 const MARGIN: f64 = 46.0;
 const TOP: f64 = 46.0;
 const DIAL_TITLE: f64 = 26.0;
-const LEGEND: f64 = 130.0;
 const COLUMNS: usize = 2;
 const WIDTH: f64 = 2.0 * (RADIUS + MARGIN);
 const HEIGHT: f64 = WIDTH + DIAL_TITLE;
 
 impl Polar {
-    /// Writes `<name>.svg` and `<name>.png` into a folder that exists.
-    ///
-    /// # Errors
-    /// If a file cannot be written.
-    pub(in crate::cli) fn write(&self, folder: &Path) -> Result<()> {
-        crate::io::write_atomic(&folder.join(format!("{}.svg", self.name)), self.svg()?.as_bytes())?;
-        crate::io::write_atomic(&folder.join(format!("{}.png", self.name)), &self.png()?)?;
-        Ok(())
+    fn names(&self) -> impl Iterator<Item = &str> {
+        self.dials.iter().take(1).flat_map(|d| &d.curves).map(|c| c.name.as_str())
     }
 
     /// Value at the rim: the next whole ring above all of them.
@@ -69,16 +67,23 @@ impl Polar {
 }
 
 impl Drawing for Polar {
-    fn name(&self) -> &str {
-        self.name
-    }
-
     fn size(&self) -> (u32, u32) {
         let rows = self.dials.len().div_ceil(COLUMNS);
-        ((COLUMNS as f64 * WIDTH + LEGEND) as u32, (TOP + rows as f64 * HEIGHT) as u32)
+        ((COLUMNS as f64 * WIDTH + legend_width(self.names())) as u32, (TOP + rows as f64 * HEIGHT) as u32)
     }
 
-    fn draw<B: DrawingBackend>(&self, canvas: &Canvas<'_, B>) -> Result<()> {
+    fn csv(&self) -> String {
+        let mut text = format!("dial,curve,angle_deg,value_{}\n", self.unit);
+        for (dial, curve) in self.dials.iter().flat_map(|d| d.curves.iter().map(move |c| (d, c))) {
+            let (dial, name) = (quoted(&dial.title), quoted(&curve.name));
+            for (angle, value) in &curve.points {
+                text.push_str(&format!("{dial},{name},{},{value}\n", angle.to_degrees()));
+            }
+        }
+        text
+    }
+
+    fn draw<B: DrawingBackend>(&self, canvas: &Canvas<'_, B>) -> Result<(), PlotError> {
         canvas.fill(PAPER)?;
         canvas.text(&self.title, (MARGIN / 2.0, 14.0), TITLE, Anchor::Corner, INK)?;
         let rim = self.rim();
@@ -89,15 +94,15 @@ impl Drawing for Polar {
             canvas.text(&dial.title, (left + MARGIN / 2.0, top), HEADING, Anchor::Corner, INK)?;
             self.scale(canvas, center, rim)?;
             for curve in &dial.curves {
-                let at = |&(angle, value): &(f64, f64)| place(center, angle, 1.0 - (rim - value) / DEPTH);
+                let at = |&(angle, value): &(f64, f64)| place(center, angle, 1.0 - (rim - value) / self.depth);
                 curve.stroke(canvas, &curve.points.iter().map(at).collect::<Vec<_>>())?;
             }
         }
         let left = COLUMNS as f64 * WIDTH;
         for (k, curve) in self.dials.iter().take(1).flat_map(|d| &d.curves).enumerate() {
-            let y = TOP + DIAL_TITLE + MARGIN + 20.0 * k as f64;
+            let y = TOP + DIAL_TITLE + MARGIN + LEGEND_ROW * k as f64;
             curve.stroke(canvas, &[(left, y), (left + 26.0, y)])?;
-            canvas.text(curve.name, (left + 34.0, y), TICK, Anchor::Left, INK)?;
+            canvas.text(&curve.name, (left + SAMPLE, y), TICK, Anchor::Left, INK)?;
         }
         Ok(())
     }
@@ -110,8 +115,8 @@ fn place(center: (f64, f64), angle: f64, share: f64) -> (f64, f64) {
 }
 
 impl Polar {
-    fn scale<B: DrawingBackend>(&self, canvas: &Canvas<'_, B>, center: (f64, f64), rim: f64) -> Result<()> {
-        let n_rings = (DEPTH / RING) as usize;
+    fn scale<B: DrawingBackend>(&self, canvas: &Canvas<'_, B>, center: (f64, f64), rim: f64) -> Result<(), PlotError> {
+        let n_rings = (self.depth / RING) as usize;
         for ring in 1..=n_rings {
             let share = ring as f64 / n_rings as f64;
             let circle: Vec<_> = (0..=180).map(|k| place(center, f64::from(k * 2).to_radians(), share)).collect();
@@ -128,7 +133,7 @@ impl Polar {
         for ring in 1..=n_rings {
             let share = ring as f64 / n_rings as f64;
             let unit = if ring == n_rings { format!(" {}", self.unit) } else { String::new() };
-            let text = format!("{:.0}{unit}", rim - DEPTH * (1.0 - share));
+            let text = format!("{:.0}{unit}", rim - self.depth * (1.0 - share));
             let (x, y) = place(center, 0.26, share);
             canvas.text(&text, (x + 2.0, y), TICK, Anchor::Left, SOFT)?;
         }
@@ -137,7 +142,7 @@ impl Polar {
 }
 
 impl Curve {
-    fn stroke<B: DrawingBackend>(&self, canvas: &Canvas<'_, B>, path: &[(f64, f64)]) -> Result<()> {
+    fn stroke<B: DrawingBackend>(&self, canvas: &Canvas<'_, B>, path: &[(f64, f64)]) -> Result<(), PlotError> {
         // Points that fall together have no direction to draw along.
         let mut path = path.to_vec();
         path.dedup_by(|p, q| (p.0 - q.0).hypot(p.1 - q.1) < 0.5 / f64::from(GRID));
@@ -155,14 +160,17 @@ mod tests {
     #[test]
     fn a_dial_holds_its_scale_and_curves() {
         let points = (-180..=180).map(|k| f64::from(k).to_radians()).map(|a| (a, 7.0 + 20.0 * a.cos().abs().log10()));
-        let curve = Curve { name: "total", color: [0, 90, 180], dashed: false, points: points.collect() };
+        let curve = Curve { name: "total".to_owned(), color: [0, 90, 180], dashed: false, points: points.collect() };
         let dial = Dial { title: "E plane".to_owned(), curves: vec![curve] };
-        let polar = Polar { name: "test", title: "A pattern".to_owned(), unit: "dBi", dials: vec![dial] };
+        let polar = Polar { name: "test", title: "A pattern".to_owned(), unit: "dBi", depth: 40.0, dials: vec![dial] };
         let svg = polar.svg().unwrap();
         for text in ["A pattern", "E plane", "10 dBi", "-20", "-150", "total"] {
             assert!(svg.contains(text), "{text} stands in the drawing");
         }
         assert!((polar.rim() - 10.0).abs() < 1e-12, "the next ring above 7 dBi");
+        let csv = polar.csv();
+        assert_eq!(csv.lines().next(), Some("dial,curve,angle_deg,value_dBi"), "header");
+        assert_eq!(csv.lines().count(), 362, "every point");
         assert_eq!(polar.png().unwrap(), polar.png().unwrap(), "deterministic");
     }
 }

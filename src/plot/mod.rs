@@ -1,12 +1,11 @@
-//! Line plots for print: a grid of panels with shared axes and one legend, as SVG, PNG and CSV of what is drawn.
+//! Plots for print: lines over an abscissa, bars, patterns over an angle and Smith charts, as SVG, PNG and CSV.
 //!
-//! Enters: a [`Figure`] of named series. Leaves: three files of the same stem. SVG and PNG come from the same drawing
-//! on a fine pixel grid, so they look alike; the CSV has one row per point, with the reason where there is none. Text
-//! is set in the font in assets/fonts, so that no font of the system is needed.
+//! Enters: a [`Figure`] of named series, a [`Polar`] or a [`Smith`]; [`charts`] makes them of results. Leaves: the bytes
+//! of a file ([`Plot::bytes`]); who writes it is the program's edge. SVG and PNG come from the same drawing on a fine
+//! pixel grid, so they look alike; the CSV has one row per point, with the reason where there is none. Text is set in
+//! the font in assets/fonts, so that no font of the system is needed. The ground is white: this is for paper.
 //!
-//! Patterns over an angle are drawn as [`Polar`] figures by the same means.
-//!
-//! Not handled: anything but lines over one abscissa or angle.
+//! Not handled: surfaces, and several ordinates in one panel.
 
 #![allow(
     clippy::cast_possible_truncation,
@@ -17,83 +16,172 @@
 
 mod axes;
 mod canvas;
+pub mod charts;
 mod layout;
+pub mod palette;
 mod polar;
+mod smith;
 
-use anyhow::{Context, Result, anyhow};
-use canvas::Canvas;
+use canvas::{Canvas, failed};
 use plotters::prelude::{BitMapBackend, DrawingBackend, IntoDrawingArea, SVGBackend};
-use std::path::Path;
 
-pub(super) use axes::Axis;
-pub(super) use polar::{Curve, Dial, Polar};
+pub use axes::Axis;
+pub use polar::{Curve, Dial, Polar};
+pub use smith::{ARC_POINTS, MARKS, Smith, Trace, arc, reflection};
+
+/// Why there is no picture.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PlotError {
+    /// The drawing library gave up.
+    #[error("the plot cannot be drawn: {reason}")]
+    Drawing {
+        /// What the library says.
+        reason: String,
+    },
+}
+
+/// The form of a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Vectors, to be scaled at will.
+    Svg,
+    /// Pixels, two to a unit of the figure.
+    Png,
+    /// The numbers.
+    Csv,
+}
+
+impl Format {
+    /// All forms.
+    pub const ALL: [Self; 3] = [Self::Svg, Self::Png, Self::Csv];
+
+    /// Ending of the file's name.
+    #[must_use]
+    pub fn ending(self) -> &'static str {
+        match self {
+            Self::Svg => "svg",
+            Self::Png => "png",
+            Self::Csv => "csv",
+        }
+    }
+}
+
+/// Any plot.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Plot {
+    /// Lines or bars over an abscissa.
+    Figure(Figure),
+    /// Lines over an angle.
+    Polar(Polar),
+    /// Reflections in the unit disc.
+    Smith(Smith),
+}
+
+impl From<Figure> for Plot {
+    fn from(figure: Figure) -> Self {
+        Self::Figure(figure)
+    }
+}
+
+impl From<Polar> for Plot {
+    fn from(polar: Polar) -> Self {
+        Self::Polar(polar)
+    }
+}
+
+impl Plot {
+    /// Stem of its files.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Figure(figure) => figure.name,
+            Self::Polar(polar) => polar.name,
+            Self::Smith(_) => "smith",
+        }
+    }
+
+    /// The contents of its file.
+    ///
+    /// # Errors
+    /// [`PlotError`] if the drawing library gives up.
+    pub fn bytes(&self, format: Format) -> Result<Vec<u8>, PlotError> {
+        match self {
+            Self::Figure(figure) => figure.bytes(format),
+            Self::Polar(polar) => polar.bytes(format),
+            Self::Smith(smith) => smith.bytes(format),
+        }
+    }
+}
 
 /// Drawing grid points per unit of the figure's size: SVG coordinates are whole grid points.
 const GRID: u32 = 4;
 /// Grid points averaged into one pixel of the PNG, along each side, which smooths its edges.
 const PER_PIXEL: u32 = 2;
 
-/// One figure.
-pub(super) struct Figure {
+/// Panels with shared axes and one legend.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Figure {
     /// Stem of the files.
-    pub(super) name: &'static str,
-    pub(super) title: String,
+    pub name: &'static str,
+    /// Heading.
+    pub title: String,
     /// Heading of the legend.
-    pub(super) legend: String,
+    pub legend: String,
     /// Row by row.
-    pub(super) panels: Vec<Panel>,
+    pub panels: Vec<Panel>,
     /// Panels in a row.
-    pub(super) columns: usize,
+    pub columns: usize,
     /// Shared by all panels.
-    pub(super) x: Axis,
+    pub x: Axis,
 }
 
 /// One panel; those of a row share the range of y.
-pub(super) struct Panel {
-    pub(super) title: String,
-    pub(super) y: Axis,
-    pub(super) series: Vec<Series>,
+#[derive(Clone, Debug, PartialEq)]
+pub struct Panel {
+    /// Heading.
+    pub title: String,
+    /// Its ordinate.
+    pub y: Axis,
+    /// Its lines.
+    pub series: Vec<Series>,
 }
 
-/// One line.
-pub(super) struct Series {
+/// One line, or a row of bars.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Series {
     /// Name in the legend; equal names in several panels stand there once.
-    pub(super) name: String,
-    pub(super) color: [u8; 3],
-    pub(super) style: Style,
-    pub(super) points: Vec<Point>,
+    pub name: String,
+    /// Red, green, blue.
+    pub color: [u8; 3],
+    /// How it is drawn.
+    pub style: Style,
+    /// Its points, by ascending abscissa.
+    pub points: Vec<Point>,
 }
 
 /// How a line is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Style {
+pub enum Style {
     /// A solid line with its points marked.
     Marked,
     /// A solid line: many points.
     Plain,
     /// A dashed line: a reference.
     Dashed,
+    /// Bars that stand on zero, evenly spaced.
+    Bars,
 }
 
 /// A value over its abscissa, or why there is none.
-pub(super) struct Point {
-    pub(super) x: f64,
-    pub(super) y: Result<f64, String>,
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point {
+    /// Abscissa.
+    pub x: f64,
+    /// Ordinate.
+    pub y: Result<f64, String>,
 }
 
-impl Figure {
-    /// Writes `<name>.svg`, `<name>.png` and `<name>.csv` into a folder that exists.
-    ///
-    /// # Errors
-    /// If a file cannot be written.
-    pub(super) fn write(&self, folder: &Path) -> Result<()> {
-        let to = |extension: &str| folder.join(format!("{}.{extension}", self.name));
-        crate::io::write_atomic(&to("csv"), self.csv().as_bytes())?;
-        crate::io::write_atomic(&to("svg"), self.svg()?.as_bytes())?;
-        crate::io::write_atomic(&to("png"), &self.png()?)?;
-        Ok(())
-    }
-
+impl Drawing for Figure {
     fn csv(&self) -> String {
         let mut text = format!("panel,series,{},value,refused\n", csv_name(&self.x.label));
         for panel in &self.panels {
@@ -110,46 +198,49 @@ impl Figure {
         }
         text
     }
-}
-
-impl Drawing for Figure {
-    fn name(&self) -> &str {
-        self.name
-    }
 
     fn size(&self) -> (u32, u32) {
         layout::size(self)
     }
 
-    fn draw<B: DrawingBackend>(&self, canvas: &Canvas<'_, B>) -> Result<()> {
+    fn draw<B: DrawingBackend>(&self, canvas: &Canvas<'_, B>) -> Result<(), PlotError> {
         layout::draw(self, canvas)
     }
 }
 
 /// What can be drawn on any backend, and so written as SVG and PNG.
 trait Drawing {
-    fn name(&self) -> &str;
+    /// Every point as a row.
+    fn csv(&self) -> String;
 
     /// Width and height in units of the figure.
     fn size(&self) -> (u32, u32);
 
-    fn draw<B: DrawingBackend>(&self, canvas: &Canvas<'_, B>) -> Result<()>;
+    fn draw<B: DrawingBackend>(&self, canvas: &Canvas<'_, B>) -> Result<(), PlotError>;
+
+    fn bytes(&self, format: Format) -> Result<Vec<u8>, PlotError> {
+        match format {
+            Format::Svg => self.svg().map(String::into_bytes),
+            Format::Png => self.png(),
+            Format::Csv => Ok(self.csv().into_bytes()),
+        }
+    }
 
     /// The drawing on the fine grid, to be shown at the figure's own size.
-    fn svg(&self) -> Result<String> {
+    fn svg(&self) -> Result<String, PlotError> {
         canvas::register_fonts();
         let (width, height) = self.size();
         let mut svg = String::new();
         {
             let area = SVGBackend::with_string(&mut svg, (width * GRID, height * GRID)).into_drawing_area();
             self.draw(&Canvas::new(&area, canvas::SVG_DROP))?;
-            area.present().map_err(|e| anyhow!("drawing {}: {e}", self.name()))?;
+            area.present().map_err(failed)?;
         }
         let grid = format!("width=\"{}\" height=\"{}\"", width * GRID, height * GRID);
         Ok(svg.replacen(&grid, &format!("width=\"{width}\" height=\"{height}\""), 1))
     }
 
-    fn png(&self) -> Result<Vec<u8>> {
+    fn png(&self) -> Result<Vec<u8>, PlotError> {
         canvas::register_fonts();
         let (width, height) = self.size();
         let (wide, high) = (width * GRID, height * GRID);
@@ -157,15 +248,15 @@ trait Drawing {
         {
             let area = BitMapBackend::with_buffer(&mut pixels, (wide, high)).into_drawing_area();
             self.draw(&Canvas::new(&area, canvas::PICTURE_DROP))?;
-            area.present().map_err(|e| anyhow!("drawing {}: {e}", self.name()))?;
+            area.present().map_err(failed)?;
         }
         let (small, width, height) = averaged(&pixels, wide, high);
-        encode(&small, width, height).with_context(|| format!("encoding {}.png", self.name()))
+        encode(&small, width, height).map_err(failed)
     }
 }
 
 /// Writes an RGB picture as PNG.
-fn encode(pixels: &[u8], width: u32, height: u32) -> Result<Vec<u8>> {
+fn encode(pixels: &[u8], width: u32, height: u32) -> Result<Vec<u8>, png::EncodingError> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(png::ColorType::Rgb);
@@ -199,7 +290,8 @@ fn csv_name(label: &str) -> String {
 }
 
 /// A text as a CSV cell.
-pub(super) fn quoted(text: &str) -> String {
+#[must_use]
+pub fn quoted(text: &str) -> String {
     if text.contains([',', '"', '\n']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
 }
 
@@ -239,13 +331,11 @@ mod tests {
 
     #[test]
     fn svg_and_png_are_drawn_and_the_same_each_time() {
-        let folder = tempfile::tempdir().unwrap();
-        figure().write(folder.path()).unwrap();
-        let svg = std::fs::read_to_string(folder.path().join("test.svg")).unwrap();
+        let svg = figure().svg().unwrap();
         for text in ["A test", "error (%)", "bend radius R (mm)", "left, right"] {
             assert!(svg.contains(text), "{text} stands in the drawing");
         }
-        let png = std::fs::read(folder.path().join("test.png")).unwrap();
+        let png = Plot::from(figure()).bytes(Format::Png).unwrap();
         let mut decoder = png::Decoder::new(std::io::Cursor::new(&png)).read_info().unwrap();
         let mut pixels = vec![0; decoder.output_buffer_size().unwrap()];
         decoder.next_frame(&mut pixels).unwrap();

@@ -1,9 +1,8 @@
 //! Lines, marks and text in the figure's own units, drawn on the fine grid of any plotters backend.
 
-use super::GRID;
-use anyhow::{Result, anyhow};
+use super::{GRID, PlotError};
 use plotters::coord::Shift;
-use plotters::element::{Circle, PathElement, Text};
+use plotters::element::{Circle, PathElement, Rectangle, Text};
 use plotters::prelude::{DrawingArea, DrawingBackend, RGBColor};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, FontStyle, FontTransform, IntoFont, TextStyle, register_font};
@@ -13,8 +12,8 @@ use std::sync::Once;
 pub(super) fn register_fonts() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
-        let regular: &[u8] = include_bytes!("../../../assets/fonts/Inter-Regular.ttf");
-        let bold: &[u8] = include_bytes!("../../../assets/fonts/Inter-SemiBold.ttf");
+        let regular: &[u8] = include_bytes!("../../assets/fonts/Inter-Regular.ttf");
+        let bold: &[u8] = include_bytes!("../../assets/fonts/Inter-SemiBold.ttf");
         for (style, bytes) in [(FontStyle::Normal, regular), (FontStyle::Bold, bold)] {
             assert!(register_font(FAMILY, style, bytes).is_ok(), "the fonts in assets/fonts are intact");
         }
@@ -73,18 +72,18 @@ impl<'a, B: DrawingBackend> Canvas<'a, B> {
         (width * f64::from(GRID)).round().max(1.0) as u32
     }
 
-    pub(super) fn fill(&self, color: [u8; 3]) -> Result<()> {
-        self.area.fill(&rgb(color)).map_err(|e| anyhow!("{e}"))
+    pub(super) fn fill(&self, color: [u8; 3]) -> Result<(), PlotError> {
+        self.area.fill(&rgb(color)).map_err(failed)
     }
 
-    pub(super) fn line(&self, points: &[Place], color: [u8; 3], width: f64) -> Result<()> {
+    pub(super) fn line(&self, points: &[Place], color: [u8; 3], width: f64) -> Result<(), PlotError> {
         let path: Vec<_> = points.iter().map(|&p| Self::at(p)).collect();
         let element = PathElement::new(path, rgb(color).stroke_width(Self::width(width)));
-        self.area.draw(&element).map_err(|e| anyhow!("{e}"))
+        self.area.draw(&element).map_err(failed)
     }
 
     /// A polyline with dashes whose rhythm runs on around its corners.
-    pub(super) fn dashed(&self, points: &[Place], color: [u8; 3], width: f64) -> Result<()> {
+    pub(super) fn dashed(&self, points: &[Place], color: [u8; 3], width: f64) -> Result<(), PlotError> {
         const RHYTHM: [f64; 2] = [6.0, 4.0];
         let (mut phase, mut left) = (0, RHYTHM[0]);
         for pair in points.windows(2) {
@@ -108,12 +107,24 @@ impl<'a, B: DrawingBackend> Canvas<'a, B> {
         Ok(())
     }
 
-    pub(super) fn mark(&self, center: Place, radius: f64, color: [u8; 3]) -> Result<()> {
+    pub(super) fn mark(&self, center: Place, radius: f64, color: [u8; 3]) -> Result<(), PlotError> {
         let radius = (radius * f64::from(GRID)).round() as i32;
-        self.area.draw(&Circle::new(Self::at(center), radius, rgb(color).filled())).map_err(|e| anyhow!("{e}"))
+        self.area.draw(&Circle::new(Self::at(center), radius, rgb(color).filled())).map_err(failed)
     }
 
-    pub(super) fn text(&self, text: &str, at: Place, font: Font, anchor: Anchor, color: [u8; 3]) -> Result<()> {
+    /// A filled rectangle between two corners.
+    pub(super) fn bar(&self, from: Place, to: Place, color: [u8; 3]) -> Result<(), PlotError> {
+        self.area.draw(&Rectangle::new([Self::at(from), Self::at(to)], rgb(color).filled())).map_err(failed)
+    }
+
+    pub(super) fn text(
+        &self,
+        text: &str,
+        at: Place,
+        font: Font,
+        anchor: Anchor,
+        color: [u8; 3],
+    ) -> Result<(), PlotError> {
         let (h, v, transform) = match anchor {
             Anchor::Left => (HPos::Left, VPos::Center, FontTransform::None),
             Anchor::Right => (HPos::Right, VPos::Center, FontTransform::None),
@@ -127,8 +138,13 @@ impl<'a, B: DrawingBackend> Canvas<'a, B> {
         let desc = (FAMILY, font.size * f64::from(GRID), weight).into_font().transform(transform);
         let color = rgb(color);
         let style = TextStyle::from(desc).color(&color).pos(Pos::new(h, v));
-        self.area.draw(&Text::new(text.to_owned(), Self::at(at), style)).map_err(|e| anyhow!("{e}"))
+        self.area.draw(&Text::new(text.to_owned(), Self::at(at), style)).map_err(failed)
     }
+}
+
+/// What the drawing library says.
+pub(super) fn failed(error: impl std::fmt::Display) -> PlotError {
+    PlotError::Drawing { reason: error.to_string() }
 }
 
 fn rgb([r, g, b]: [u8; 3]) -> RGBColor {

@@ -11,17 +11,22 @@ pub(super) enum Scale {
 
 /// A label with its unit, and a scale.
 #[derive(Clone, Debug, PartialEq)]
-pub(in crate::cli) struct Axis {
-    pub(in crate::cli) label: String,
+pub struct Axis {
+    /// What is laid off, with its unit.
+    pub label: String,
     scale: Scale,
 }
 
 impl Axis {
-    pub(in crate::cli) fn linear(label: &str) -> Self {
+    /// An axis with even steps.
+    #[must_use]
+    pub fn linear(label: &str) -> Self {
         Self { label: label.to_owned(), scale: Scale::Linear }
     }
 
-    pub(in crate::cli) fn log(label: &str, ticks: &[f64]) -> Self {
+    /// A logarithmic axis with the ticks given, or powers of ten where none are.
+    #[must_use]
+    pub fn log(label: &str, ticks: &[f64]) -> Self {
         Self { label: label.to_owned(), scale: Scale::Log(ticks.to_vec()) }
     }
 

@@ -2,8 +2,7 @@
 
 use super::axes::Spread;
 use super::canvas::{Anchor, Canvas, Font};
-use super::{Figure, Panel, Series, Style};
-use anyhow::Result;
+use super::{Figure, Panel, PlotError, Series, Style};
 use plotters::prelude::DrawingBackend;
 
 const PANEL: (f64, f64) = (390.0, 270.0);
@@ -14,7 +13,12 @@ const PANEL_TITLE: f64 = 24.0;
 const BETWEEN_ROWS: f64 = 34.0;
 const BOTTOM: f64 = 54.0;
 const LEGEND: f64 = 172.0;
-const LEGEND_ROW: f64 = 20.0;
+pub(super) const LEGEND_ROW: f64 = 20.0;
+/// Room of a line's sample before its name, and of one letter of the name.
+pub(super) const SAMPLE: f64 = 34.0;
+const LETTER: f64 = 6.9;
+/// Width of a bar over the distance of two of them.
+const BAR: f64 = 0.88;
 
 pub(super) const INK: [u8; 3] = [33, 37, 41];
 pub(super) const SOFT: [u8; 3] = [90, 96, 102];
@@ -30,19 +34,26 @@ pub(super) const TICK: Font = Font { size: 12.0, bold: false };
 /// Width and height of the figure.
 pub(super) fn size(figure: &Figure) -> (u32, u32) {
     let rows = figure.panels.len().div_ceil(figure.columns);
-    let width = LEFT + figure.columns as f64 * (PANEL.0 + GAP) + LEGEND;
+    let names = figure.panels.iter().flat_map(|p| &p.series).map(|s| s.name.as_str());
+    let width = LEFT + figure.columns as f64 * (PANEL.0 + GAP) + legend_width(names);
     let height = TOP + rows as f64 * (PANEL.1 + PANEL_TITLE + BETWEEN_ROWS) - BETWEEN_ROWS + BOTTOM;
     (width as u32, height as u32)
 }
 
+/// Room that the legend needs for its names.
+pub(super) fn legend_width<'a>(names: impl Iterator<Item = &'a str>) -> f64 {
+    let longest = names.map(|name| name.chars().count()).max().unwrap_or_default();
+    LEGEND.max(SAMPLE + LETTER * longest as f64 + 12.0)
+}
+
 /// Draws the whole figure.
-pub(super) fn draw<B: DrawingBackend>(figure: &Figure, canvas: &Canvas<'_, B>) -> Result<()> {
+pub(super) fn draw<B: DrawingBackend>(figure: &Figure, canvas: &Canvas<'_, B>) -> Result<(), PlotError> {
     canvas.fill(PAPER)?;
     canvas.text(&figure.title, (LEFT, 14.0), TITLE, Anchor::Corner, INK)?;
     let all = || figure.panels.iter().flat_map(|p| &p.series);
-    let x = figure.x.spread(all().flat_map(|s| s.points.iter().map(|p| p.x)));
+    let x = figure.x.spread(all().flat_map(Series::abscissas));
     for (row, panels) in figure.panels.chunks(figure.columns).enumerate() {
-        let values = panels.iter().flat_map(|p| &p.series).flat_map(Series::values).map(|(_, y)| y);
+        let values = panels.iter().flat_map(|p| &p.series).flat_map(Series::ordinates);
         let y = panels[0].y.spread(values);
         for (column, panel) in panels.iter().enumerate() {
             let frame = Frame {
@@ -63,7 +74,7 @@ pub(super) fn draw<B: DrawingBackend>(figure: &Figure, canvas: &Canvas<'_, B>) -
     legend(figure, canvas)
 }
 
-fn legend<B: DrawingBackend>(figure: &Figure, canvas: &Canvas<'_, B>) -> Result<()> {
+fn legend<B: DrawingBackend>(figure: &Figure, canvas: &Canvas<'_, B>) -> Result<(), PlotError> {
     let left = LEFT + figure.columns as f64 * (PANEL.0 + GAP) + 2.0;
     let mut y = TOP + PANEL_TITLE + 8.0;
     canvas.text(&figure.legend, (left, y), HEADING, Anchor::Left, INK)?;
@@ -80,7 +91,7 @@ fn legend<B: DrawingBackend>(figure: &Figure, canvas: &Canvas<'_, B>) -> Result<
         if series.style == Style::Marked {
             canvas.mark((left + 13.0, y), MARK, series.color)?;
         }
-        canvas.text(&series.name, (left + 34.0, y), TICK, Anchor::Left, INK)?;
+        canvas.text(&series.name, (left + SAMPLE, y), TICK, Anchor::Left, INK)?;
     }
     Ok(())
 }
@@ -96,9 +107,27 @@ impl Series {
         self.points.iter().filter_map(|p| p.y.as_ref().ok().map(|&y| (p.x, y)))
     }
 
-    fn stroke<B: DrawingBackend>(&self, canvas: &Canvas<'_, B>, path: &[(f64, f64)]) -> Result<()> {
+    /// Distance of two bars.
+    fn step(&self) -> f64 {
+        let gaps = self.points.windows(2).map(|p| (p[1].x - p[0].x).abs());
+        if self.style == Style::Bars { gaps.fold(f64::INFINITY, f64::min).min(1e300) } else { 0.0 }
+    }
+
+    /// What the abscissa must reach: bars are as wide as they are apart.
+    fn abscissas(&self) -> impl Iterator<Item = f64> {
+        let half = if self.points.len() > 1 { self.step() / 2.0 } else { 0.0 };
+        self.points.iter().flat_map(move |p| [p.x - half, p.x + half])
+    }
+
+    /// What the ordinate must reach: bars stand on zero.
+    fn ordinates(&self) -> impl Iterator<Item = f64> {
+        let zero = (self.style == Style::Bars).then_some(0.0);
+        self.values().map(|(_, y)| y).chain(zero)
+    }
+
+    fn stroke<B: DrawingBackend>(&self, canvas: &Canvas<'_, B>, path: &[(f64, f64)]) -> Result<(), PlotError> {
         match self.style {
-            Style::Marked | Style::Plain => canvas.line(path, self.color, STROKE),
+            Style::Marked | Style::Plain | Style::Bars => canvas.line(path, self.color, STROKE),
             Style::Dashed => canvas.dashed(path, self.color, STROKE),
         }
     }
@@ -121,7 +150,7 @@ impl Frame<'_> {
         (self.left + PANEL.0 * self.x.place(x), self.bottom() - PANEL.1 * self.y.place(y))
     }
 
-    fn grid<B: DrawingBackend>(&self, canvas: &Canvas<'_, B>, with_numbers: bool) -> Result<()> {
+    fn grid<B: DrawingBackend>(&self, canvas: &Canvas<'_, B>, with_numbers: bool) -> Result<(), PlotError> {
         let (right, bottom) = (self.left + PANEL.0, self.bottom());
         for &tick in &self.x.ticks {
             let x = self.at((tick, self.y.lo)).0;
@@ -141,8 +170,15 @@ impl Frame<'_> {
         canvas.line(&[(self.left, self.top), (self.left, bottom), (right, bottom)], SOFT, 1.0)
     }
 
-    fn series<B: DrawingBackend>(&self, canvas: &Canvas<'_, B>, panel: &Panel) -> Result<()> {
+    fn series<B: DrawingBackend>(&self, canvas: &Canvas<'_, B>, panel: &Panel) -> Result<(), PlotError> {
         for series in &panel.series {
+            if series.style == Style::Bars {
+                let half = BAR * series.step() / 2.0;
+                for (x, y) in series.values() {
+                    canvas.bar(self.at((x - half, 0.0)), self.at((x + half, y)), series.color)?;
+                }
+                continue;
+            }
             // A refused point breaks the line.
             for run in series.points.split(|p| p.y.is_err()) {
                 let path: Vec<_> = run.iter().filter_map(|p| Some(self.at((p.x, *p.y.as_ref().ok()?)))).collect();
@@ -157,7 +193,12 @@ impl Frame<'_> {
         Ok(())
     }
 
-    fn labels<B: DrawingBackend>(&self, canvas: &Canvas<'_, B>, panel: &Panel, with_label: bool) -> Result<()> {
+    fn labels<B: DrawingBackend>(
+        &self,
+        canvas: &Canvas<'_, B>,
+        panel: &Panel,
+        with_label: bool,
+    ) -> Result<(), PlotError> {
         canvas.text(&panel.title, (self.left, self.top - 18.0), HEADING, Anchor::Corner, INK)?;
         if with_label {
             let middle = (self.left - 48.0, self.top + PANEL.1 / 2.0);
