@@ -41,7 +41,7 @@ pub use camera::{Camera, Projection, Ray, StandardView};
 pub use colormap::ColorMap;
 pub use gizmo::{Gizmo, GizmoPart};
 pub use glam::{Vec2, Vec3};
-pub use gpu::{Gpu, GpuError};
+pub use gpu::{Counts, Gpu, GpuError};
 pub use readback::{Picture, picture};
 pub use renderer::Renderer;
 pub use scene::{Array, Grid, HandleState, Handles, Lines, Paint, Part, Rgba, Scalars, Scene, Surface};
