@@ -1,10 +1,11 @@
 //! The window: collects replies, draws the panels, carries out what they ask for.
 
 use super::command::{Command, Facts};
+use super::compare_session::CompareSession;
 use super::dialogs::{About, Dialog, Next};
 use super::export_dialog::ExportDialog;
 use super::mesh_export::MeshExport;
-use super::mesh_session::{MeshNews, MeshSession};
+use super::mesh_session::{MeshNews, MeshSession, has_cylinder};
 use super::outbox::{Action, Outbox};
 use super::palette::Palette;
 use super::result_export::ResultExport;
@@ -12,9 +13,10 @@ use super::session::{News, Session, first_project};
 use super::solve_session::{SolveNews, SolveSession};
 use super::status::{self, Messages, Weight};
 use super::theme;
-use super::ui_state::{RightTab, UiState};
+use super::ui_state::{Heat, RightTab, UiState};
 use super::viewport::{Sources, Viewport};
 use super::{bars, paint, palette, panel_results};
+use crate::pipeline::compare_job::CompareJob;
 use crate::pipeline::mesh_job::MeshJob;
 use crate::pipeline::solve_job::SolveJob;
 use crate::pipeline::worker::Worker;
@@ -31,8 +33,9 @@ pub(super) struct App {
     pub(super) session: Session,
     pub(super) mesh: MeshSession,
     pub(super) solve: SolveSession,
+    pub(super) compare: CompareSession,
     pub(super) state: UiState,
-    viewport: Viewport,
+    pub(super) viewport: Viewport,
     pub(super) dialog: Dialog,
     pub(super) messages: Messages,
     /// Whether the window may close without asking.
@@ -60,6 +63,7 @@ impl App {
             session: Session::new(first_project(), None, worker),
             mesh: MeshSession::new(MeshJob::spawn(wake())),
             solve: SolveSession::new(SolveJob::spawn(wake())),
+            compare: CompareSession::new(CompareJob::spawn(wake())),
             state,
             viewport: Viewport::default(),
             dialog: Dialog::None,
@@ -90,6 +94,10 @@ impl App {
             shows_pattern: self.state.solve.shows_pattern,
             compensates: project.settings.compensation != CompensationMode::None,
             orthographic: self.state.camera.projection == Projection::Orthographic,
+            is_painted: self.state.heat != Heat::None,
+            is_comparing: self.compare.is_busy(),
+            has_cylinder: has_cylinder(project),
+            shows_ghost: self.state.shows_ghost,
             shows_cage: self.state.shows_cage,
             sees_through: self.state.sees_through,
             shows_log: self.state.shows_log,
@@ -115,6 +123,7 @@ impl App {
             }
             Action::Run(command) => self.run(ctx, command),
             Action::StopWork => self.session.stop_work(),
+            Action::CancelCompare => self.compare.cancel(),
             Action::CancelMesh => self.mesh.cancel(),
             Action::CancelSolve => self.solve.cancel(),
             Action::ResumeSolve => self.solve.resume(),
@@ -222,6 +231,10 @@ impl App {
                 }
             }
             Command::SavePlot => self.ask_plot(None),
+            Command::SavePicture => self.ask_picture(),
+            Command::Report => self.ask_report(),
+            Command::Compare => self.compare.start(self.session.project()),
+            Command::ShowGhost => state.shows_ghost = !state.shows_ghost,
             Command::Fit => state.fit = true,
             Command::LookFrom(view) => state.camera.look_from(view),
             Command::Orthographic => {
@@ -245,6 +258,7 @@ impl App {
     /// Forgets what was computed for another project.
     pub(super) fn forget_computed(&mut self) {
         self.solve.clear();
+        self.compare.clear();
         self.mesh.clear();
         self.state.forget_mesh();
     }
@@ -334,6 +348,7 @@ impl eframe::App for App {
         }
         self.sync_mesh();
         self.sync_solve();
+        self.sync_compare();
         let facts = self.facts();
         let mut out = Outbox::default();
         let is_modal = !matches!(self.dialog, Dialog::None);
@@ -358,11 +373,14 @@ impl eframe::App for App {
             raised = shown.response.rect.height();
         }
         self.side_panels(ui, &facts, &mut out);
-        let pose = self.session.pose().cloned();
+        let own = self.session.pose().cloned();
         CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
             let mesh = self.mesh.shown().filter(|_| self.state.mesh.shows);
             let solve = Some(&self.solve).filter(|_| self.state.solve.shows_pattern);
-            let sources = Sources { session: &self.session, pose: pose.as_ref(), mesh, solve };
+            let preview = self.state.preview.filter(|_| mesh.is_none());
+            let on_show = self.compare.on_show_or(&self.session, preview);
+            let pose = preview.and_then(|mode| self.compare.pose(mode)).or(own.as_ref());
+            let sources = Sources { session: &self.session, pose, mesh, solve, on_show, preview };
             self.viewport.ui(ui, sources, &mut self.state, &mut out);
         });
         let about = About { name: &self.session.name(), facts: &facts };
@@ -377,11 +395,12 @@ impl eframe::App for App {
             self.tell(news);
         }
         // For the progress: rarely while the solver needs the processor.
-        let pause = match (self.session.is_busy() || self.mesh.is_busy(), self.solve.is_busy()) {
-            (true, _) => Some(100),
-            (false, true) => Some(500),
-            (false, false) => None,
-        };
+        let pause =
+            match (self.session.is_busy() || self.mesh.is_busy() || self.compare.is_busy(), self.solve.is_busy()) {
+                (true, _) => Some(100),
+                (false, true) => Some(500),
+                (false, false) => None,
+            };
         if let Some(pause) = pause {
             ctx.request_repaint_after(std::time::Duration::from_millis(pause));
         }

@@ -15,7 +15,8 @@ pub(super) const MENUS: [Menu; 6] = [
         "File",
         &[
             &[C::New, C::Open, C::Save, C::SaveAs],
-            &[C::Export, C::ExportMesh, C::ExportResults, C::SavePlot],
+            &[C::Export, C::ExportMesh, C::ExportResults],
+            &[C::SavePlot, C::SavePicture, C::Report],
             &[C::Quit],
         ],
     ),
@@ -28,7 +29,7 @@ pub(super) const MENUS: [Menu; 6] = [
             &[C::Palette],
         ],
     ),
-    ("Antenna", &[&[C::Compensate, C::CompensateNot], &[C::Mesh, C::Solve]]),
+    ("Antenna", &[&[C::Compensate, C::CompensateNot, C::Compare], &[C::Mesh, C::Solve]]),
     (
         "View",
         &[
@@ -43,7 +44,7 @@ pub(super) const MENUS: [Menu; 6] = [
                 C::LookFrom(StandardView::Isometric),
                 C::Orthographic,
             ],
-            &[C::ShowCage, C::SeeThrough, C::ShowMesh, C::ShowPattern],
+            &[C::ShowCage, C::SeeThrough, C::ShowGhost, C::ShowMesh, C::ShowPattern],
             &[C::ShowResults, C::ShowLog],
         ],
     ),

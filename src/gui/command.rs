@@ -31,6 +31,10 @@ pub(super) enum Command {
     ShowPattern,
     ExportResults,
     SavePlot,
+    SavePicture,
+    Report,
+    Compare,
+    ShowGhost,
     Fit,
     LookFrom(StandardView),
     Orthographic,
@@ -63,6 +67,10 @@ pub(super) struct Facts {
     pub(super) sees_through: bool,
     pub(super) shows_log: bool,
     pub(super) selects_by_box: bool,
+    pub(super) is_painted: bool,
+    pub(super) is_comparing: bool,
+    pub(super) has_cylinder: bool,
+    pub(super) shows_ghost: bool,
     pub(super) theme: Option<ThemePreference>,
 }
 
@@ -92,6 +100,10 @@ impl Command {
         Self::ShowPattern,
         Self::ExportResults,
         Self::SavePlot,
+        Self::SavePicture,
+        Self::Report,
+        Self::Compare,
+        Self::ShowGhost,
         Self::Fit,
         Self::LookFrom(StandardView::Front),
         Self::LookFrom(StandardView::Back),
@@ -139,6 +151,15 @@ impl Command {
             Self::ShowPattern => ("3-D pattern", "Draw the radiation pattern around the antenna"),
             Self::ExportResults => ("Export results…", "Write a run's reflection as a table or a Touchstone file"),
             Self::SavePlot => ("Save plot…", "Save a plot as SVG, PNG or CSV, as it would be printed"),
+            Self::SavePicture => ("Save picture…", "Save the 3-D view as a picture of any size, with its colour bar"),
+            Self::Report => {
+                ("Save report…", "Write one page on the project with all its figures, for any browser and for print")
+            }
+            Self::Compare => (
+                "Before and after",
+                "Compute the shape without compensation, by WL and isometrically, to be compared and looked at",
+            ),
+            Self::ShowGhost => ("Exact cylinder", "Draw the exact cylinder through the antenna"),
             Self::Fit => ("Fit", "Show all of the antenna and its cage, or of the mesh"),
             Self::LookFrom(view) => match view {
                 StandardView::Front => ("Front", "Look along +y, x to the right"),
@@ -202,7 +223,15 @@ impl Command {
             Self::SeeThrough => vec![plain(Key::T)],
             Self::Palette => vec![command_shift(Key::P)],
             Self::Keys => vec![plain(Key::F1)],
-            Self::ResetAll | Self::CompensateNot | Self::SavePlot | Self::ShowLog | Self::Theme(_) => Vec::new(),
+            Self::ResetAll
+            | Self::CompensateNot
+            | Self::SavePlot
+            | Self::SavePicture
+            | Self::Report
+            | Self::Compare
+            | Self::ShowGhost
+            | Self::ShowLog
+            | Self::Theme(_) => Vec::new(),
         }
     }
 
@@ -218,9 +247,12 @@ impl Command {
             Self::ExportMesh | Self::ShowMesh => (facts.has_mesh, "there is no mesh yet"),
             Self::Solve => (!facts.is_solving, "a run is under way"),
             Self::ExportResults => (facts.has_results, "there are no results yet"),
-            Self::SavePlot => {
-                (facts.has_results || facts.has_mesh, "there is nothing to plot: no results and no mesh yet")
-            }
+            Self::SavePlot => (
+                facts.has_results || facts.has_mesh || facts.is_painted,
+                "there is nothing to plot: no results, no mesh, nothing painted",
+            ),
+            Self::Compare => (!facts.is_comparing, "a comparison is under way"),
+            Self::ShowGhost => (facts.has_cylinder, "only a single bend without hand edits has one"),
             Self::ShowPattern => (facts.has_pattern, "no run with a pattern yet"),
             Self::BoxSelect | Self::ShowCage | Self::SeeThrough => {
                 (!facts.shows_mesh, "there is no cage in the view of the mesh")
@@ -242,6 +274,7 @@ impl Command {
             Self::ShowMesh => Some(facts.shows_mesh),
             Self::ShowResults => Some(facts.shows_results),
             Self::ShowPattern => Some(facts.shows_pattern),
+            Self::ShowGhost => Some(facts.shows_ghost),
             Self::ShowCage => Some(facts.shows_cage),
             Self::SeeThrough => Some(facts.sees_through),
             Self::ShowLog => Some(facts.shows_log),

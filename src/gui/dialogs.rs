@@ -9,10 +9,12 @@ use super::mesh_export::MeshExport;
 use super::outbox::{Action, Outbox};
 use super::palette::Palette;
 use super::plot_export::PlotExport;
+use super::report_export::ReportExport;
 use super::result_export::ResultExport;
 use super::session::first_project;
 use super::theme::Tokens;
 use super::ui_state::UiState;
+use super::view_export::ViewExport;
 use egui::{Context, Id, Key, Modal, RichText, TextEdit, Ui};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
@@ -57,6 +59,8 @@ pub(super) enum Dialog {
     MeshExport(Box<MeshExport>),
     ResultExport(Box<ResultExport>),
     PlotExport(Box<PlotExport>),
+    ViewExport(Box<ViewExport>),
+    Report(Box<ReportExport>),
     Palette(Palette),
     Keys,
 }
@@ -235,6 +239,8 @@ impl Dialog {
                 Self::MeshExport(dialog) => dialog.ui(ui, state, out),
                 Self::ResultExport(dialog) => dialog.ui(ui, state, out),
                 Self::PlotExport(dialog) => dialog.ui(ui, state, out),
+                Self::ViewExport(dialog) => dialog.ui(ui, state, out),
+                Self::Report(dialog) => dialog.ui(ui, state, out),
                 Self::Palette(palette) => palette.ui(ui, about.facts, &state.recent_commands, out),
                 Self::Keys => keys(ui),
             }
@@ -249,6 +255,8 @@ impl Dialog {
         match self {
             Self::Export(dialog) => dialog.is_working(),
             Self::MeshExport(dialog) => dialog.is_working(),
+            Self::ViewExport(dialog) => dialog.is_working(),
+            Self::Report(dialog) => dialog.is_working(),
             _ => false,
         }
     }

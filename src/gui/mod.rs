@@ -18,10 +18,12 @@
 mod app;
 mod bars;
 mod command;
+mod compare_session;
 mod dialogs;
 mod export_dialog;
 mod field;
 mod files;
+mod heat;
 mod mesh_export;
 mod mesh_scene;
 mod mesh_session;
@@ -31,8 +33,10 @@ mod paint;
 mod palette;
 mod panel_antenna;
 mod panel_cage;
+mod panel_compare;
 mod panel_compensation;
 mod panel_distortion;
+mod panel_heat;
 mod panel_mesh;
 mod panel_results;
 mod panel_solve;
@@ -44,6 +48,7 @@ mod plots;
 mod polar;
 mod preset_fields;
 mod readouts;
+mod report_export;
 mod result_export;
 mod scene;
 mod session;
@@ -59,9 +64,12 @@ mod tests_mesh;
 mod tests_shell;
 #[cfg(test)]
 mod tests_solve;
+#[cfg(test)]
+mod tests_view;
 mod theme;
 mod trace;
 mod ui_state;
+mod view_export;
 mod viewport;
 
 pub use picture::picture;

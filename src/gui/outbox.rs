@@ -24,6 +24,8 @@ pub(super) enum Action {
     AddPreset(PresetSpec),
     /// Stops the computation under way.
     StopWork,
+    /// Calls the comparison off.
+    CancelCompare,
     /// Calls the meshing off.
     CancelMesh,
     /// Calls the solver off.

@@ -64,6 +64,8 @@ pub(super) struct Session {
     shown: Option<Shown>,
     pose: Option<(Project, Pose)>,
     refused: Option<String>,
+    /// Where the last refused shape crosses itself, mm; until something is changed.
+    crossings_mm: Vec<[f64; 3]>,
     in_gesture: bool,
     guarded: bool,
     serial: u64,
@@ -92,6 +94,7 @@ impl Session {
             shown: None,
             pose: None,
             refused: None,
+            crossings_mm: Vec::new(),
             in_gesture: false,
             guarded: false,
             serial: 0,
@@ -128,6 +131,11 @@ impl Session {
     /// Why the project as it is now cannot be computed.
     pub(super) fn refusal(&self) -> Option<&str> {
         self.refused.as_deref()
+    }
+
+    /// Where the last refused shape crosses itself, mm.
+    pub(super) fn crossings_mm(&self) -> &[[f64; 3]] {
+        &self.crossings_mm
     }
 
     /// Whether a gesture is under way.
@@ -176,6 +184,7 @@ impl Session {
     /// Changes the project.
     pub(super) fn apply(&mut self, edit: Edit) -> Result<(), EditError> {
         self.guarded = false;
+        self.crossings_mm.clear();
         self.history.apply(edit)
     }
 
@@ -191,6 +200,7 @@ impl Session {
 
     fn step(&mut self, step: fn(&mut History) -> bool) {
         step(&mut self.history);
+        self.crossings_mm.clear();
         self.in_gesture = false;
         self.guarded = false;
     }
@@ -199,6 +209,7 @@ impl Session {
     pub(super) fn replace(&mut self, project: Project, path: Option<PathBuf>) {
         self.history.replace(project);
         self.path = path;
+        self.crossings_mm.clear();
         self.in_gesture = false;
         self.guarded = false;
         self.refused = None;
@@ -252,6 +263,12 @@ impl Session {
         self.sent = Some(Sent { project, quality, generation, answered: false });
     }
 
+    /// The number of the last request.
+    #[cfg(test)]
+    pub(super) fn generation(&self) -> Option<u64> {
+        self.sent.as_ref().map(|s| s.generation)
+    }
+
     /// Takes an answer of the worker.
     pub(super) fn receive(&mut self, reply: Reply) -> Option<News> {
         let sent = self.sent.as_mut().filter(|s| s.generation == reply.generation && !s.answered)?;
@@ -268,6 +285,7 @@ impl Session {
             Err(PipelineError::Cancelled(_)) => None,
             Err(error) => {
                 let message = error.to_string();
+                self.crossings_mm = error.crossings_mm().to_vec();
                 let is_full = sent.quality == Quality::Full;
                 if is_full && std::mem::take(&mut self.guarded) && sent.project == *self.history.project() {
                     self.take_back(reply.retreat.as_deref());

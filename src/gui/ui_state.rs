@@ -1,6 +1,7 @@
 //! What the user looks at and has selected: never part of a project, never undone, kept between runs.
 
 use crate::pipeline::{Density, Shape};
+use crate::project::CompensationMode;
 use crate::render::{Camera, Projection, Vec3};
 use crate::tet::Metal;
 use egui::ThemePreference;
@@ -29,11 +30,16 @@ pub(super) enum Heat {
     MaxStrain,
     /// Smaller principal stretch, minus 1.
     MinStrain,
+    /// Thickness of the substrate over the one drawn, minus 1.
+    Thickness,
+    /// Distance from the exact cylinder.
+    Distance,
 }
 
 impl Heat {
     /// All of them, in the order of the choice.
-    pub(super) const ALL: [Self; 4] = [Self::None, Self::Area, Self::MaxStrain, Self::MinStrain];
+    pub(super) const ALL: [Self; 6] =
+        [Self::None, Self::Area, Self::MaxStrain, Self::MinStrain, Self::Thickness, Self::Distance];
 
     /// Name in the choice and over the colour bar.
     pub(super) fn text(self) -> &'static str {
@@ -42,6 +48,58 @@ impl Heat {
             Self::Area => "Area change",
             Self::MaxStrain => "Greatest strain",
             Self::MinStrain => "Smallest strain",
+            Self::Thickness => "Thickness change",
+            Self::Distance => "Off cylinder",
+        }
+    }
+
+    /// What it means.
+    pub(super) fn tip(self) -> &'static str {
+        match self {
+            Self::None => "Show what the parts are made of",
+            Self::Area => "Area over flat area, minus 1",
+            Self::MaxStrain => "Greater principal stretch, minus 1",
+            Self::MinStrain => "Smaller principal stretch, minus 1",
+            Self::Thickness => "Thickness of the substrate over the one drawn, minus 1",
+            Self::Distance => "Distance from the exact cylinder, shifted along z to lie nearest",
+        }
+    }
+
+    /// Label of an axis of its values.
+    pub(super) fn axis(self) -> &'static str {
+        match self {
+            Self::None => "",
+            Self::Area => "Area change (%)",
+            Self::MaxStrain => "Greatest strain (%)",
+            Self::MinStrain => "Smallest strain (%)",
+            Self::Thickness => "Thickness change (%)",
+            Self::Distance => "Distance from the cylinder (µm)",
+        }
+    }
+}
+
+/// Which parts are painted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) enum HeatPart {
+    /// Substrate, patch and ground.
+    #[default]
+    All,
+    Patch,
+    Substrate,
+    Ground,
+}
+
+impl HeatPart {
+    /// All of them, in the order of the choice.
+    pub(super) const ALL: [Self; 4] = [Self::All, Self::Patch, Self::Substrate, Self::Ground];
+
+    /// Name in the choice.
+    pub(super) fn text(self) -> &'static str {
+        match self {
+            Self::All => "All parts",
+            Self::Patch => "Patch",
+            Self::Substrate => "Substrate",
+            Self::Ground => "Ground",
         }
     }
 }
@@ -234,8 +292,14 @@ pub(super) struct UiState {
     pub(super) right_tab: RightTab,
     pub(super) theme: ThemePreference,
     pub(super) heat: Heat,
-    /// Half range of the colour bar in percent, where the user fixed it.
-    pub(super) heat_range: Option<f32>,
+    pub(super) heat_part: HeatPart,
+    /// Ends of the colour bar in the unit of what is painted, where the user fixed them.
+    pub(super) heat_ends: Option<[f32; 2]>,
+    /// Whether the exact cylinder is drawn through the antenna.
+    pub(super) shows_ghost: bool,
+    /// The way of compensation that is looked at instead of the project's own.
+    #[serde(skip)]
+    pub(super) preview: Option<CompensationMode>,
     pub(super) shows_cage: bool,
     pub(super) sees_through: bool,
     pub(super) shows_log: bool,
@@ -274,7 +338,10 @@ impl Default for UiState {
             right_tab: RightTab::default(),
             theme: ThemePreference::System,
             heat: Heat::None,
-            heat_range: None,
+            heat_part: HeatPart::default(),
+            heat_ends: None,
+            shows_ghost: false,
+            preview: None,
             shows_cage: true,
             sees_through: false,
             shows_log: false,
@@ -296,6 +363,11 @@ impl Default for UiState {
 }
 
 impl UiState {
+    /// Ends of the colour bar: the fixed ones where they are a range, else those that follow the values.
+    pub(super) fn heat_range(&self, auto: [f32; 2]) -> [f32; 2] {
+        self.heat_ends.filter(|[lo, hi]| lo < hi).unwrap_or(auto)
+    }
+
     /// Shows the mesh or the antenna; each keeps its own camera, and is fitted when it is shown first.
     pub(super) fn show_mesh(&mut self, shows: bool) {
         if std::mem::replace(&mut self.mesh.shows, shows) != shows {

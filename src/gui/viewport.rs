@@ -4,18 +4,22 @@
 //! undo step per drag, live; empty ground turns the view (left), slides it (middle, right or Shift) or draws a
 //! selection box (Ctrl, or after B). Places are points from the top left of the view.
 
+use super::compare_session::mode_text;
+use super::heat::{Bar, Heated, OnShow, ticks};
 use super::mesh_scene::MeshScene;
 use super::mesh_session::ShownMesh;
 use super::outbox::{Action, Outbox};
 use super::overlay;
 use super::paint::ScenePaint;
 use super::pattern_scene::{self, PatternScene};
-use super::scene::{Hot, SceneBuilder, gizmo, to_picture};
+use super::scene::{Hot, SceneBuilder, Subject, gizmo, to_picture};
 use super::session::{Pose, Session, move_edit};
 use super::solve_session::SolveSession;
 use super::theme::Tokens;
-use super::ui_state::UiState;
+use super::ui_state::{MeshPaint, UiState};
+use super::view_export::Shot;
 use crate::geometry::DVec3;
+use crate::project::CompensationMode;
 use crate::render::drag::{Motion, displacement};
 use crate::render::pick::{gizmo_at, handle_at, handles_in};
 use crate::render::{Gizmo, GizmoPart, Scene, Vec2, Vec3, View};
@@ -80,6 +84,8 @@ pub(super) struct Viewport {
     builder: SceneBuilder,
     mesh: MeshScene,
     pattern: PatternScene,
+    /// What was drawn last.
+    shot: Option<Shot>,
 }
 
 /// What there is to be seen.
@@ -92,6 +98,9 @@ pub(super) struct Sources<'a> {
     pub(super) mesh: Option<&'a ShownMesh>,
     /// The runs whose pattern is drawn around the antenna.
     pub(super) solve: Option<&'a SolveSession>,
+    /// The computed antenna, and whether it is another one than the project's, which is only looked at.
+    pub(super) on_show: Option<OnShow<'a>>,
+    pub(super) preview: Option<CompensationMode>,
 }
 
 /// What a frame of the view works with.
@@ -100,6 +109,8 @@ struct Frame<'a> {
     pose: Option<&'a Pose>,
     mesh: Option<&'a ShownMesh>,
     solve: Option<&'a SolveSession>,
+    on_show: Option<OnShow<'a>>,
+    preview: Option<CompensationMode>,
     /// Handles in picture units.
     handles: &'a [Vec3],
     gizmo: Option<Gizmo>,
@@ -111,6 +122,11 @@ impl Frame<'_> {
     fn gizmo_at(&self, view: &View, at: Vec2) -> Option<(Vec3, GizmoPart)> {
         let gizmo = self.gizmo.as_ref()?;
         gizmo_at(view, gizmo, at).map(|part| (gizmo.center, part))
+    }
+
+    fn subject(&self) -> Subject<'_> {
+        let drawn = &self.session.project().antenna;
+        Subject { on_show: self.on_show, drawn, pose: self.pose, is_fixed: self.preview.is_some() }
     }
 
     fn local(&self, at: Pos2) -> Vec2 {
@@ -127,20 +143,20 @@ impl Frame<'_> {
 impl Viewport {
     /// Draws the view and turns what the pointer does into wishes.
     pub(super) fn ui(&mut self, ui: &mut Ui, sources: Sources<'_>, state: &mut UiState, out: &mut Outbox) {
-        let Sources { session, mesh, .. } = sources;
+        let Sources { session, mesh, on_show, preview, .. } = sources;
         let solve = sources.solve.filter(|_| mesh.is_none());
         // The cage is neither seen nor grabbed while the mesh is shown.
         let pose = sources.pose.filter(|_| mesh.is_none());
         let rect = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(rect, Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "3-D view"));
-        let handles = match pose.filter(|_| state.shows_cage) {
+        let handles = match pose.filter(|_| state.shows_cage && preview.is_none()) {
             Some(pose) => to_picture(&pose.vertices[..pose.cage.n_handles().min(pose.vertices.len())]),
             None => Vec::new(),
         };
         state.selection.retain(|&v| pose.is_none_or(|p| (v as usize) < p.cage.n_handles()));
         let gizmo = gizmo(&handles, state, Tokens::here(ui), self.hot);
-        let frame = Frame { session, pose, mesh, solve, handles: &handles, gizmo, rect };
+        let frame = Frame { session, pose, mesh, solve, on_show, preview, handles: &handles, gizmo, rect };
         if std::mem::take(&mut state.fit) {
             self.fit(ui, &frame, state);
         }
@@ -179,7 +195,7 @@ impl Viewport {
         match frame.mesh {
             Some(mesh) => self.mesh.scene(mesh, &state.mesh, tokens),
             None => {
-                let mut scene = self.builder.scene(frame.session, frame.pose, state, tokens, self.hot);
+                let mut scene = self.builder.scene(frame.subject(), state, tokens, self.hot);
                 let antenna = scene.surfaces.iter().flat_map(|s| s.positions.iter());
                 let [lo, hi] =
                     antenna.fold([Vec3::INFINITY, Vec3::NEG_INFINITY], |[lo, hi], &p| [lo.min(p), hi.max(p)]);
@@ -319,14 +335,52 @@ impl Viewport {
         scene
     }
 
-    fn overlay(&self, ui: &Ui, response: &Response, frame: &Frame<'_>, state: &UiState, scene: &Scene) {
+    /// What is painted on the antenna on show.
+    pub(super) fn heated(&mut self, on_show: Option<OnShow<'_>>, state: &UiState) -> Option<&Heated> {
+        self.builder.heated(on_show?, state)
+    }
+
+    /// What was drawn last, to be drawn again as a picture.
+    pub(super) fn shot(&self) -> Option<&Shot> {
+        self.shot.as_ref()
+    }
+
+    /// The scales of colours that the picture needs.
+    fn bars(&mut self, frame: &Frame<'_>, state: &UiState) -> Vec<Bar> {
+        if frame.mesh.is_some() {
+            return (state.mesh.paint == MeshPaint::Angle).then(overlay::angle_bar).into_iter().collect();
+        }
+        let heated = frame.on_show.and_then(|shown| self.builder.heated(shown, state));
+        let heat = heated.map(|heated| Bar {
+            map: state.heat.map(),
+            title: state.heat.text().to_owned(),
+            ticks: ticks(state.heat, state.heat_range(heated.auto)),
+        });
+        let found = frame.solve.and_then(|solve| pattern_scene::pattern(solve, &state.solve));
+        let pattern = found.map(|(_, pattern)| {
+            overlay::pattern_bar(pattern.field.freq, pattern_scene::range(pattern, state.solve.range_db))
+        });
+        heat.into_iter().chain(pattern).collect()
+    }
+
+    fn overlay(&mut self, ui: &Ui, response: &Response, frame: &Frame<'_>, state: &UiState, scene: &Scene) {
         let view = frame.view(ui, state);
         name_vertices(ui, response, frame, state, &view);
-        let range = self.builder.range(state).filter(|_| frame.mesh.is_none());
-        overlay::draw(ui, frame.rect, &view, state, range);
-        if let Some((run, pattern)) = frame.solve.and_then(|solve| pattern_scene::pattern(solve, &state.solve)) {
-            let ends = pattern_scene::range(pattern, state.solve.range_db);
-            overlay::pattern(ui, frame.rect, (&run.name, pattern.field.freq), ends, range.is_some());
+        let bars = self.bars(frame, state);
+        overlay::draw(ui, frame.rect, &view);
+        overlay::bars(ui, frame.rect, &bars);
+        let tokens = Tokens::here(ui);
+        let [r, g, b, _] = tokens.text.to_array();
+        self.shot = Some(Shot { scene: scene.clone(), view, bars, ink: [r, g, b] });
+        if let Some(mode) = frame.preview {
+            let text = format!("Preview: {}. The project is not changed.", mode_text(mode));
+            overlay::note(ui, frame.rect, text, tokens.warning);
+        } else if let Some((run, _)) = frame.solve.and_then(|solve| pattern_scene::pattern(solve, &state.solve)) {
+            overlay::note(ui, frame.rect, format!("Pattern of {}", run.name), tokens.weak);
+        }
+        if frame.mesh.is_none() && frame.preview.is_none() {
+            let places = frame.session.crossings_mm().iter().map(|p| DVec3::from_array(*p).as_vec3());
+            overlay::crossings(ui, frame.rect, &view, places);
         }
         if let Some(mesh) = frame.mesh {
             let is_stale = mesh.is_stale(frame.session.project());
@@ -348,7 +402,7 @@ impl Viewport {
                 if let (Some(vertex), Some(pose)) = (hovered, frame.pose) {
                     overlay::vertex_hint(ui, frame.rect, vertex, pose);
                 } else if let (Some(at), Some(surface), None) = (pointer, scene.surfaces.first(), frame.mesh) {
-                    overlay::value_hint(ui, &view, surface, at, frame.local(at), state);
+                    overlay::value_hint(ui, &view, surface, at, frame.local(at), state.heat);
                 }
             }
             _ => {}
