@@ -3,19 +3,21 @@
 use super::command::{Command, Facts};
 use super::compare_session::CompareSession;
 use super::dialogs::{About, Dialog, Next};
+use super::disk::Disk;
 use super::export_dialog::ExportDialog;
 use super::mesh_export::MeshExport;
 use super::mesh_session::{MeshNews, MeshSession, has_cylinder};
 use super::outbox::{Action, Outbox};
 use super::palette::Palette;
+use super::recovery::Recovery;
 use super::result_export::ResultExport;
 use super::session::{News, Session, first_project};
 use super::solve_session::{SolveNews, SolveSession};
 use super::status::{self, Messages, Weight};
 use super::theme;
-use super::ui_state::{Heat, RightTab, UiState};
+use super::ui_state::{Heat, RightTab, Tab, UiState};
 use super::viewport::{Sources, Viewport};
-use super::{bars, paint, palette, panel_results};
+use super::{APP_ID, bars, paint, palette, panel_results};
 use crate::pipeline::compare_job::CompareJob;
 use crate::pipeline::mesh_job::MeshJob;
 use crate::pipeline::solve_job::SolveJob;
@@ -23,7 +25,7 @@ use crate::pipeline::worker::Worker;
 use crate::project::{CompensationMode, Edit, PresetEntry, Settings};
 use crate::render::Projection;
 use egui::{CentralPanel, Frame, Panel, Ui, ViewportCommand};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 const STATE_KEY: &str = "window";
 
@@ -38,6 +40,12 @@ pub(super) struct App {
     pub(super) viewport: Viewport,
     pub(super) dialog: Dialog,
     pub(super) messages: Messages,
+    pub(super) recovery: Recovery,
+    pub(super) disk: Disk,
+    /// Whether the window had the focus in the last frame.
+    pub(super) has_focus: bool,
+    /// Whether another program has changed the file and the user was not asked yet.
+    pub(super) asks_to_reload: bool,
     /// Whether the window may close without asking.
     may_close: bool,
     /// The window's title as last set.
@@ -68,12 +76,20 @@ impl App {
             viewport: Viewport::default(),
             dialog: Dialog::None,
             messages: Messages::default(),
+            recovery: Recovery::new(recovery_folder(cc)),
+            disk: Disk::spawn(wake()),
+            has_focus: true,
+            asks_to_reload: false,
             may_close: false,
             title: String::new(),
         };
         if let Some(path) = path {
             app.open(path);
+        } else if cc.storage.is_some() && app.state.recent_files.is_empty() && !app.state.is_welcomed {
+            app.state.is_welcomed = true;
+            app.dialog = Dialog::Welcome;
         }
+        app.offer_recovery();
         app
     }
 
@@ -83,6 +99,7 @@ impl App {
         Facts {
             can_undo: history.can_undo(),
             can_redo: history.can_redo(),
+            has_recent: !self.state.recent_files.is_empty(),
             has_selection: !self.state.selection.is_empty(),
             has_hand_edits: !project.hand_edits.is_empty(),
             has_mesh: self.mesh.shown().is_some(),
@@ -101,6 +118,7 @@ impl App {
             shows_cage: self.state.shows_cage,
             sees_through: self.state.sees_through,
             shows_log: self.state.shows_log,
+            shows_history: self.state.tab == Tab::History,
             selects_by_box: self.state.selects_by_box,
             theme: Some(self.state.theme),
         }
@@ -116,6 +134,7 @@ impl App {
             }
             Action::Cancel => self.session.cancel(),
             Action::Edit(place, edit) => self.edit(place, edit),
+            Action::GoTo(step) => self.session.go_to(step),
             Action::AddPreset(preset) => {
                 let index = self.session.project().presets.len();
                 let entry = PresetEntry { enabled: true, preset };
@@ -143,17 +162,22 @@ impl App {
             Action::OpenPath(path) => self.open(&path),
             Action::SavePath(path) => {
                 let then = match &self.dialog {
-                    Dialog::Path(dialog) => dialog.then,
+                    Dialog::Path(dialog) => dialog.then.clone(),
                     _ => None,
                 };
-                if self.save(&path) {
-                    self.go_on(ctx, then);
-                }
+                self.save(ctx, &path, then);
             }
             Action::SaveThen(next) => self.save_then(ctx, Some(next)),
+            Action::SaveOver(path, then) => self.save_over(ctx, &path, then),
+            Action::AskSave(then) => self.ask_save(then),
+            Action::AskRecent(path) => self.ask_unsaved(ctx, Next::File(path)),
+            Action::Reload => self.reload(),
+            Action::Recover(index) => self.recover(ctx, index),
+            Action::DiscardFound(index) => self.discard_found(index),
             Action::AskOpen => self.ask_open(),
             Action::Start(project) => {
                 self.session.replace(*project, None);
+                self.disk.note(None);
                 self.forget_computed();
                 self.state.fit = true;
                 self.state.selection.clear();
@@ -181,6 +205,9 @@ impl App {
             Command::Quit => self.ask_unsaved(ctx, Next::Quit),
             Command::Save => self.save_then(ctx, None),
             Command::SaveAs => self.ask_save(None),
+            Command::ClearRecent => state.recent_files.clear(),
+            Command::Welcome => self.dialog = Dialog::Welcome,
+            Command::Example(example) => self.ask_unsaved(ctx, Next::Example(example)),
             Command::Export => {
                 let folder = self.folder().join(format!("{}-export", self.session.name()));
                 let finished = self.session.finished();
@@ -234,24 +261,9 @@ impl App {
             Command::SavePicture => self.ask_picture(),
             Command::Report => self.ask_report(),
             Command::Compare => self.compare.start(self.session.project()),
-            Command::ShowGhost => state.shows_ghost = !state.shows_ghost,
-            Command::Fit => state.fit = true,
-            Command::LookFrom(view) => state.camera.look_from(view),
-            Command::Orthographic => {
-                state.camera.projection = match state.camera.projection {
-                    Projection::Perspective => Projection::Orthographic,
-                    Projection::Orthographic => Projection::Perspective,
-                }
-            }
-            Command::ShowCage => state.shows_cage = !state.shows_cage,
-            Command::SeeThrough => state.sees_through = !state.sees_through,
-            Command::ShowLog => state.shows_log = !state.shows_log,
-            Command::Theme(theme) => {
-                state.theme = theme;
-                ctx.set_theme(theme);
-            }
             Command::Palette => self.dialog = Dialog::Palette(Palette::default()),
             Command::Keys => self.dialog = Dialog::Keys,
+            _ => self.run_view(ctx, command),
         }
     }
 
@@ -303,16 +315,7 @@ impl App {
         if self.session.history().is_dirty() {
             self.dialog = Dialog::Unsaved(next);
         } else {
-            self.go_on(ctx, Some(next));
-        }
-    }
-
-    pub(super) fn go_on(&mut self, ctx: &egui::Context, next: Option<Next>) {
-        match next {
-            None => {}
-            Some(Next::New) => self.carry_out(ctx, Action::Start(Box::new(first_project()))),
-            Some(Next::Open) => self.ask_open(),
-            Some(Next::Quit) => self.carry_out(ctx, Action::CloseWindow),
+            self.carry_out(ctx, next.action());
         }
     }
 
@@ -340,7 +343,20 @@ impl App {
     }
 }
 
+/// Where unsaved work is kept: beside what the window remembers, so nowhere if it remembers nothing.
+fn recovery_folder(cc: &eframe::CreationContext<'_>) -> Option<PathBuf> {
+    cc.storage.and_then(|_| eframe::storage_dir(APP_ID)).map(|folder| folder.join("recovery"))
+}
+
 impl eframe::App for App {
+    fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
+        self.guard(ctx);
+    }
+
+    fn on_exit(&mut self) {
+        self.recovery.close(self.session.history().is_dirty() && !self.may_close);
+    }
+
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
         for news in self.session.sync() {
@@ -355,7 +371,7 @@ impl eframe::App for App {
         if !is_modal && !self.viewport.is_dragging() {
             out.actions.extend(Command::pressed(&ctx, &facts).into_iter().map(Action::Run));
         }
-        Panel::top("menus").show(ui, |ui| bars::menus(ui, &facts, &mut out));
+        Panel::top("menus").show(ui, |ui| bars::menus(ui, &facts, &self.state.recent_files, &mut out));
         Panel::top("tools").show(ui, |ui| bars::toolbar(ui, &facts, &mut out));
         Panel::bottom("status").show(ui, |ui| {
             status::ui(ui, &self.session, &self.messages, &mut self.state, &mut out);
@@ -383,7 +399,12 @@ impl eframe::App for App {
             let sources = Sources { session: &self.session, pose, mesh, solve, on_show, preview };
             self.viewport.ui(ui, sources, &mut self.state, &mut out);
         });
-        let about = About { name: &self.session.name(), facts: &facts };
+        let about = About {
+            name: &self.session.name(),
+            is_dirty: self.session.history().is_dirty(),
+            facts: &facts,
+            found: &self.recovery.found,
+        };
         self.dialog.ui(&ctx, about, &mut self.state, &mut out);
         self.messages.show_toasts(&ctx, raised);
         for action in out.actions {

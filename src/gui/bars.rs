@@ -1,10 +1,13 @@
 //! Menus and toolbar.
 
 use super::command::{Command, Facts};
+use super::notices::recent_item;
 use super::outbox::{Action, Outbox};
+use crate::project::Example;
 use crate::render::StandardView;
 use Command as C;
 use egui::{ThemePreference, Ui};
+use std::path::PathBuf;
 
 /// A menu: its title, and its commands in groups with a line between them.
 pub(super) type Menu = (&'static str, &'static [&'static [Command]]);
@@ -14,7 +17,7 @@ pub(super) const MENUS: [Menu; 6] = [
     (
         "File",
         &[
-            &[C::New, C::Open, C::Save, C::SaveAs],
+            &[C::New, C::Open, C::Save, C::SaveAs, C::ClearRecent],
             &[C::Export, C::ExportMesh, C::ExportResults],
             &[C::SavePlot, C::SavePicture, C::Report],
             &[C::Quit],
@@ -23,7 +26,7 @@ pub(super) const MENUS: [Menu; 6] = [
     (
         "Edit",
         &[
-            &[C::Undo, C::Redo],
+            &[C::Undo, C::Redo, C::ShowHistory],
             &[C::SelectAll, C::SelectNone, C::BoxSelect],
             &[C::ResetSelected, C::ResetAll],
             &[C::Palette],
@@ -52,7 +55,19 @@ pub(super) const MENUS: [Menu; 6] = [
         "Theme",
         &[&[C::Theme(ThemePreference::System), C::Theme(ThemePreference::Light), C::Theme(ThemePreference::Dark)]],
     ),
-    ("Help", &[&[C::Keys]]),
+    (
+        "Help",
+        &[
+            &[C::Keys, C::Welcome],
+            &[
+                C::Example(Example::Flat),
+                C::Example(Example::BentH),
+                C::Example(Example::BentE),
+                C::Example(Example::Saddle),
+                C::Example(Example::Twist),
+            ],
+        ],
+    ),
 ];
 
 /// The title of the menu that a command stands in.
@@ -62,7 +77,7 @@ pub(super) fn menu_of(command: Command) -> &'static str {
 }
 
 /// Draws the menus.
-pub(super) fn menus(ui: &mut Ui, facts: &Facts, out: &mut Outbox) {
+pub(super) fn menus(ui: &mut Ui, facts: &Facts, recent: &[PathBuf], out: &mut Outbox) {
     egui::MenuBar::new().ui(ui, |ui| {
         for (title, groups) in MENUS {
             ui.menu_button(title, |ui| {
@@ -71,12 +86,31 @@ pub(super) fn menus(ui: &mut Ui, facts: &Facts, out: &mut Outbox) {
                         ui.separator();
                     }
                     for &command in *group {
-                        if command.menu_item(ui, facts) {
+                        if command == C::ClearRecent {
+                            recent_menu(ui, facts, recent, out);
+                        } else if command.menu_item(ui, facts) {
                             out.push(Action::Run(command));
                         }
                     }
                 }
             });
+        }
+    });
+}
+
+/// The files used last, and the command that forgets them.
+fn recent_menu(ui: &mut Ui, facts: &Facts, recent: &[PathBuf], out: &mut Outbox) {
+    ui.menu_button("Open recent", |ui| {
+        for path in recent {
+            if recent_item(ui, path) {
+                out.push(Action::AskRecent(path.clone()));
+            }
+        }
+        if !recent.is_empty() {
+            ui.separator();
+        }
+        if C::ClearRecent.menu_item(ui, facts) {
+            out.push(Action::Run(C::ClearRecent));
         }
     });
 }

@@ -2,6 +2,7 @@
 //!
 //! Menus, toolbar and shortcuts all read this one list, so that none can say something the others do not.
 
+use crate::project::Example;
 use crate::render::StandardView;
 use egui::{Context, Key, KeyboardShortcut, Modifiers, ThemePreference, os::OperatingSystem};
 
@@ -12,6 +13,7 @@ pub(super) enum Command {
     Open,
     Save,
     SaveAs,
+    ClearRecent,
     Export,
     Quit,
     Undo,
@@ -40,10 +42,13 @@ pub(super) enum Command {
     Orthographic,
     ShowCage,
     SeeThrough,
+    ShowHistory,
     ShowLog,
     Theme(ThemePreference),
     Palette,
     Keys,
+    Welcome,
+    Example(Example),
 }
 
 /// What decides whether a command can be used, and whether it is ticked.
@@ -52,6 +57,7 @@ pub(super) enum Command {
 pub(super) struct Facts {
     pub(super) can_undo: bool,
     pub(super) can_redo: bool,
+    pub(super) has_recent: bool,
     pub(super) has_selection: bool,
     pub(super) has_hand_edits: bool,
     pub(super) compensates: bool,
@@ -66,6 +72,7 @@ pub(super) struct Facts {
     pub(super) shows_cage: bool,
     pub(super) sees_through: bool,
     pub(super) shows_log: bool,
+    pub(super) shows_history: bool,
     pub(super) selects_by_box: bool,
     pub(super) is_painted: bool,
     pub(super) is_comparing: bool,
@@ -81,6 +88,7 @@ impl Command {
         Self::Open,
         Self::Save,
         Self::SaveAs,
+        Self::ClearRecent,
         Self::Export,
         Self::Quit,
         Self::Undo,
@@ -115,12 +123,19 @@ impl Command {
         Self::Orthographic,
         Self::ShowCage,
         Self::SeeThrough,
+        Self::ShowHistory,
         Self::ShowLog,
         Self::Theme(ThemePreference::System),
         Self::Theme(ThemePreference::Light),
         Self::Theme(ThemePreference::Dark),
         Self::Palette,
         Self::Keys,
+        Self::Welcome,
+        Self::Example(Example::Flat),
+        Self::Example(Example::BentH),
+        Self::Example(Example::BentE),
+        Self::Example(Example::Saddle),
+        Self::Example(Example::Twist),
     ];
 
     /// The text in menus and on buttons, and what it does.
@@ -130,6 +145,7 @@ impl Command {
             Self::Open => ("Open…", "Open a project file"),
             Self::Save => ("Save", "Save the project file"),
             Self::SaveAs => ("Save as…", "Save the project under another name"),
+            Self::ClearRecent => ("Clear recent files", "Forget which files were used last; the files stay"),
             Self::Export => ("Export…", "Write the geometry with its certificate of no gaps"),
             Self::Quit => ("Quit", "Close the window"),
             Self::Undo => ("Undo", "Take back the last step"),
@@ -173,12 +189,21 @@ impl Command {
             Self::Orthographic => ("Orthographic", "No perspective: equal lengths look equal"),
             Self::ShowCage => ("Cage", "Show the cage and its vertices"),
             Self::SeeThrough => ("See-through substrate", "Show the pin and the ground through the substrate"),
+            Self::ShowHistory => ("History", "List every step of the project; go back to any of them"),
             Self::ShowLog => ("Messages", "Show the messages since the program began"),
             Self::Theme(ThemePreference::System) => ("As the system", "Light or dark as the desktop is"),
             Self::Theme(ThemePreference::Light) => ("Light", "Dark lettering on a light ground"),
             Self::Theme(ThemePreference::Dark) => ("Dark", "Light lettering on a dark ground"),
             Self::Palette => ("Find a command…", "Search all commands by what they are called or do"),
             Self::Keys => ("Keys and mouse", "List what the keys and the mouse do"),
+            Self::Welcome => ("Welcome", "Examples and recent files to begin with"),
+            Self::Example(example) => match example {
+                Example::Flat => ("Flat antenna", "The paper's patch antenna as drawn, in a cage"),
+                Example::BentH => ("Bent, H-plane, R = 10 mm", "The width curves around a cylinder along y"),
+                Example::BentE => ("Bent, E-plane, R = 10 mm", "The resonant length curves around a cylinder along x"),
+                Example::Saddle => ("Saddle", "Curved in opposite ways along x and y"),
+                Example::Twist => ("Twist", "A half wave across the patch that turns along it"),
+            },
         }
     }
 
@@ -221,8 +246,10 @@ impl Command {
             Self::Orthographic => vec![plain(Key::Num5)],
             Self::ShowCage => vec![plain(Key::C)],
             Self::SeeThrough => vec![plain(Key::T)],
+            Self::ShowHistory => vec![command(Key::H)],
             Self::Palette => vec![command_shift(Key::P)],
             Self::Keys => vec![plain(Key::F1)],
+            Self::ClearRecent | Self::Welcome | Self::Example(_) => Vec::new(),
             Self::ResetAll
             | Self::CompensateNot
             | Self::SavePlot
@@ -240,6 +267,7 @@ impl Command {
         let (is_possible, why) = match self {
             Self::Undo => (facts.can_undo, "there is nothing to take back"),
             Self::Redo => (facts.can_redo, "nothing was taken back"),
+            Self::ClearRecent => (facts.has_recent, "no file was used yet"),
             Self::SelectNone => (facts.has_selection, "no vertex is selected"),
             Self::ResetSelected if facts.has_hand_edits => (facts.has_selection, "no vertex is selected"),
             Self::ResetSelected | Self::ResetAll => (facts.has_hand_edits, "no vertex was moved by hand"),
@@ -277,6 +305,7 @@ impl Command {
             Self::ShowGhost => Some(facts.shows_ghost),
             Self::ShowCage => Some(facts.shows_cage),
             Self::SeeThrough => Some(facts.sees_through),
+            Self::ShowHistory => Some(facts.shows_history),
             Self::ShowLog => Some(facts.shows_log),
             Self::BoxSelect => Some(facts.selects_by_box),
             Self::Theme(theme) => Some(facts.theme == Some(theme)),

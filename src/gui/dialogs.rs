@@ -6,15 +6,18 @@
 use super::command::{Command, Facts};
 use super::export_dialog::ExportDialog;
 use super::mesh_export::MeshExport;
+use super::notices;
 use super::outbox::{Action, Outbox};
 use super::palette::Palette;
 use super::plot_export::PlotExport;
+use super::recovery::Found;
 use super::report_export::ReportExport;
 use super::result_export::ResultExport;
 use super::session::first_project;
 use super::theme::Tokens;
 use super::ui_state::UiState;
 use super::view_export::ViewExport;
+use crate::project::Example;
 use egui::{Context, Id, Key, Modal, RichText, TextEdit, Ui};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
@@ -33,11 +36,26 @@ pub(super) enum Purpose {
 }
 
 /// What to do once the unsaved changes are dealt with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Next {
     New,
     Open,
+    File(PathBuf),
+    Example(Example),
     Quit,
+}
+
+impl Next {
+    /// What carries it out, when nothing needs to be asked any more.
+    pub(super) fn action(self) -> Action {
+        match self {
+            Self::New => Action::Start(Box::new(first_project())),
+            Self::Open => Action::AskOpen,
+            Self::File(path) => Action::OpenPath(path),
+            Self::Example(example) => Action::Start(Box::new(example.project())),
+            Self::Quit => Action::CloseWindow,
+        }
+    }
 }
 
 /// What a dialog may have to say of the window.
@@ -45,7 +63,10 @@ pub(super) enum Next {
 pub(super) struct About<'a> {
     /// Name of the project.
     pub(super) name: &'a str,
+    pub(super) is_dirty: bool,
     pub(super) facts: &'a Facts,
+    /// Unsaved work of windows that are gone.
+    pub(super) found: &'a [Found],
 }
 
 /// The dialog that is open; it stands before everything else.
@@ -63,6 +84,13 @@ pub(super) enum Dialog {
     Report(Box<ReportExport>),
     Palette(Palette),
     Keys,
+    Welcome,
+    /// Unsaved work was found.
+    Recovery,
+    /// Another program has changed the open file.
+    Changed,
+    /// Saving would replace what another program wrote; what follows the saving.
+    Overwrite(PathBuf, Option<Next>),
 }
 
 /// A field to type a path into, and the desktop's own dialog beside it.
@@ -234,7 +262,7 @@ impl Dialog {
             match self {
                 Self::None => true,
                 Self::Path(dialog) => dialog.ui(ui, out),
-                Self::Unsaved(next) => unsaved(ui, *next, about.name, out),
+                Self::Unsaved(next) => unsaved(ui, next, about.name, out),
                 Self::Export(dialog) => dialog.ui(ui, state),
                 Self::MeshExport(dialog) => dialog.ui(ui, state, out),
                 Self::ResultExport(dialog) => dialog.ui(ui, state, out),
@@ -243,6 +271,10 @@ impl Dialog {
                 Self::Report(dialog) => dialog.ui(ui, state, out),
                 Self::Palette(palette) => palette.ui(ui, about.facts, &state.recent_commands, out),
                 Self::Keys => keys(ui),
+                Self::Welcome => notices::welcome(ui, &state.recent_files, out),
+                Self::Recovery => notices::recovery(ui, about.found, out),
+                Self::Changed => notices::changed(ui, about.name, about.is_dirty, out),
+                Self::Overwrite(path, then) => notices::overwrite(ui, path, then.as_ref(), out),
             }
         });
         // A path dialog that was answered may already have been followed by another dialog.
@@ -262,7 +294,7 @@ impl Dialog {
     }
 }
 
-fn unsaved(ui: &mut Ui, next: Next, name: &str, out: &mut Outbox) -> bool {
+fn unsaved(ui: &mut Ui, next: &Next, name: &str, out: &mut Outbox) -> bool {
     ui.heading("Unsaved changes");
     ui.add_space(6.0);
     ui.label(format!("\"{name}\" has changes that are not saved."));
@@ -270,15 +302,11 @@ fn unsaved(ui: &mut Ui, next: Next, name: &str, out: &mut Outbox) -> bool {
     let mut close = false;
     ui.horizontal(|ui| {
         if ui.button("Save").on_hover_text("Save, then go on").clicked() {
-            out.push(Action::SaveThen(next));
+            out.push(Action::SaveThen(next.clone()));
             close = true;
         }
         if ui.button("Discard changes").on_hover_text("Go on without saving").clicked() {
-            out.push(match next {
-                Next::New => Action::Start(Box::new(first_project())),
-                Next::Open => Action::AskOpen,
-                Next::Quit => Action::CloseWindow,
-            });
+            out.push(next.clone().action());
             close = true;
         }
         close |= ui.button("Cancel").on_hover_text("Stay here").clicked();

@@ -31,30 +31,34 @@ impl App {
     /// Saves, asking for the file where there is none yet.
     pub(super) fn save_then(&mut self, ctx: &egui::Context, then: Option<Next>) {
         match self.session.path.clone() {
-            Some(path) => {
-                if self.save(&path) {
-                    self.go_on(ctx, then);
-                }
-            }
+            Some(path) => self.save(ctx, &path, then),
             None => self.ask_save(then),
         }
     }
 
-    /// Writes the project; false, and said, where that is not possible.
-    pub(super) fn save(&mut self, path: &Path) -> bool {
+    /// Writes the project and goes on; asks first where another program has changed the file.
+    pub(super) fn save(&mut self, ctx: &egui::Context, path: &Path, then: Option<Next>) {
+        if self.disk.has_changed(path) {
+            self.dialog = Dialog::Overwrite(path.to_owned(), then);
+        } else {
+            self.save_over(ctx, path, then);
+        }
+    }
+
+    /// Writes the project, whatever the file holds, and goes on; says so where that is not possible.
+    pub(super) fn save_over(&mut self, ctx: &egui::Context, path: &Path, then: Option<Next>) {
         self.dialog = Dialog::None;
         match file::write(path, self.session.project()) {
             Ok(()) => {
                 self.session.mark_saved(path);
-                self.state.last_folder = path.parent().map(Path::to_owned);
+                self.note_file(path);
                 self.messages.say(Weight::Good, &format!("Saved {}", path.display()));
                 self.keep_results();
-                true
+                if let Some(next) = then {
+                    self.carry_out(ctx, next.action());
+                }
             }
-            Err(error) => {
-                self.messages.say(Weight::Error, &error.to_string());
-                false
-            }
+            Err(error) => self.messages.say(Weight::Error, &error.to_string()),
         }
     }
 
@@ -68,12 +72,20 @@ impl App {
                 if let Err(error) = self.solve.add_kept(self.session.project(), path) {
                     self.messages.say(Weight::Error, &format!("An earlier result is not shown: {error}"));
                 }
-                self.state.last_folder = path.parent().map(Path::to_owned);
+                self.note_file(path);
                 self.state.selection.clear();
                 self.state.fit = true;
             }
             Err(error) => self.messages.say(Weight::Error, &error.to_string()),
         }
+    }
+
+    /// Notes that the window and this file now hold the same.
+    fn note_file(&mut self, path: &Path) {
+        self.disk.note(Some(path));
+        self.asks_to_reload = false;
+        self.state.last_folder = path.parent().map(Path::to_owned);
+        self.state.note_recent(path);
     }
 
     /// Keeps the results beside the project's file, once it has one.

@@ -6,7 +6,9 @@
 //! (`outbox`), the wishes are carried out (`app`), and the worker is sent the project if it changed.
 //! Lengths here are millimetres, as in the project file; `scene` turns the domain into a picture.
 //!
-//! Not handled: several windows or projects at once, and tools that change the cage's topology by hand.
+//! Unsaved work is kept for the case of a crash (`recovery`), and a file changed by another program is noticed (`disk`).
+//!
+//! Not handled: several projects in one window, and tools that change the cage's topology by hand.
 
 #![allow(
     clippy::cast_possible_truncation,
@@ -20,13 +22,17 @@ mod bars;
 mod command;
 mod compare_session;
 mod dialogs;
+mod disk;
 mod export_dialog;
 mod field;
 mod files;
+mod frame;
+mod guard;
 mod heat;
 mod mesh_export;
 mod mesh_scene;
 mod mesh_session;
+mod notices;
 mod outbox;
 mod overlay;
 mod paint;
@@ -37,6 +43,7 @@ mod panel_compare;
 mod panel_compensation;
 mod panel_distortion;
 mod panel_heat;
+mod panel_history;
 mod panel_mesh;
 mod panel_results;
 mod panel_solve;
@@ -48,6 +55,7 @@ mod plots;
 mod polar;
 mod preset_fields;
 mod readouts;
+mod recovery;
 mod report_export;
 mod result_export;
 mod scene;
@@ -60,6 +68,10 @@ mod status;
 mod tests;
 #[cfg(test)]
 mod tests_mesh;
+#[cfg(test)]
+mod tests_random;
+#[cfg(test)]
+mod tests_safety;
 #[cfg(test)]
 mod tests_shell;
 #[cfg(test)]
@@ -77,6 +89,8 @@ pub use picture::picture;
 use anyhow::Context as _;
 use std::path::PathBuf;
 
+/// Names the window and its folder of remembered choices to the desktop.
+const APP_ID: &str = "conformant";
 /// Width and height of the window at its first start, points.
 const FIRST_SIZE: [f32; 2] = [1280.0, 800.0];
 /// Smallest size at which the panels still leave room for the view, points.
@@ -97,14 +111,14 @@ pub fn run(path: Option<PathBuf>) -> anyhow::Result<()> {
     anyhow::ensure!(has_display(), "there is no display: set DISPLAY or WAYLAND_DISPLAY, or use the command line");
     let viewport = egui::ViewportBuilder::default()
         .with_title("Conformant")
-        .with_app_id("conformant")
+        .with_app_id(APP_ID)
         .with_inner_size(FIRST_SIZE)
         .with_min_inner_size(LEAST_SIZE);
     let options = eframe::NativeOptions { viewport, centered: true, ..Default::default() };
     let start = move |cc: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, _> {
         Ok(Box::new(app::App::new(cc, path.as_deref())))
     };
-    match eframe::run_native("conformant", options, Box::new(start)) {
+    match eframe::run_native(APP_ID, options, Box::new(start)) {
         Err(error @ eframe::Error::Wgpu(_)) => Err(error)
             .context("no graphics adapter can draw the window: install mesa-vulkan-drivers, or try WGPU_BACKEND=gl"),
         other => other.context("the window cannot be opened"),

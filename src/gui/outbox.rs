@@ -18,6 +18,8 @@ pub(super) enum Action {
     End,
     /// The gesture is called off.
     Cancel,
+    /// Goes to a step of the history, by its number.
+    GoTo(u64),
     /// A command.
     Run(Command),
     /// Adds a preset at the end of the stack.
@@ -50,6 +52,18 @@ pub(super) enum Action {
     Start(Box<Project>),
     /// Saves, and goes on with what was asked for.
     SaveThen(Next),
+    /// Saves to a file although another program has changed it, and goes on.
+    SaveOver(PathBuf, Option<Next>),
+    /// Asks for the file to save to, and goes on.
+    AskSave(Option<Next>),
+    /// Opens a project file, asking about unsaved changes first.
+    AskRecent(PathBuf),
+    /// Takes over what another program wrote to the open file.
+    Reload,
+    /// Opens unsaved work that was found, by its place in the list.
+    Recover(usize),
+    /// Deletes unsaved work that was found, by its place in the list.
+    DiscardFound(usize),
     /// Asks for the file to open.
     AskOpen,
     /// Closes the window without asking again.

@@ -9,9 +9,7 @@ use crate::cage::Cage;
 use crate::geometry::DVec3;
 use crate::pipeline::worker::{Quality, Reply, Worker};
 use crate::pipeline::{Deformed, PipelineError};
-use crate::project::{
-    BendPlane, CompensationMode, Edit, EditError, History, PresetEntry, PresetSpec, Project, RuleSpec,
-};
+use crate::project::{Edit, EditError, Example, History, Project};
 use crate::task::Progress;
 use crate::units::{from_mm, to_mm};
 use std::path::{Path, PathBuf};
@@ -74,13 +72,7 @@ pub(super) struct Session {
 /// What the window starts with: the paper's antenna, bent so that there is something to see.
 #[must_use]
 pub(super) fn first_project() -> Project {
-    let bend = PresetSpec::Bend { plane: BendPlane::H, radius_mm: 10.0, rule: RuleSpec::Tangent, kept_plane_mm: 0.0 };
-    let mut project = Project { presets: vec![PresetEntry { enabled: true, preset: bend }], ..Project::default() };
-    // The uncompensated antenna comes first: its errors are what the compensation then removes.
-    project.settings.compensation = CompensationMode::None;
-    // As many vertices as a hand can choose among.
-    project.cage.segments = [10, 4];
-    project
+    Example::BentH.project()
 }
 
 impl Session {
@@ -198,7 +190,12 @@ impl Session {
         self.step(History::redo);
     }
 
-    fn step(&mut self, step: fn(&mut History) -> bool) {
+    /// Goes to a step of the history, on whatever branch.
+    pub(super) fn go_to(&mut self, step: u64) {
+        self.step(|history| history.go_to(step));
+    }
+
+    fn step(&mut self, step: impl FnOnce(&mut History) -> bool) {
         step(&mut self.history);
         self.crossings_mm.clear();
         self.in_gesture = false;
@@ -299,9 +296,9 @@ impl Session {
         }
     }
 
-    /// Undoes the last gesture, and goes as far in its direction as is possible.
+    /// Takes the last gesture back without a trace, and goes as far in its direction as is possible.
     fn take_back(&mut self, furthest: Option<&Project>) {
-        self.history.undo();
+        self.history.withdraw();
         if let Some(furthest) = furthest {
             self.history.begin();
             self.head_for(furthest);

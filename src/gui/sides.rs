@@ -1,12 +1,13 @@
 //! The panels on the left and on the right of the view.
 
 use super::app::App;
-use super::command::Facts;
+use super::command::{Command, Facts};
 use super::field::Refused;
 use super::outbox::Outbox;
 use super::ui_state::{RightTab, Tab};
 use super::{
-    panel_antenna, panel_cage, panel_compare, panel_compensation, panel_distortion, panel_heat, panel_mesh, panel_solve,
+    panel_antenna, panel_cage, panel_compare, panel_compensation, panel_distortion, panel_heat, panel_history,
+    panel_mesh, panel_solve,
 };
 use egui::{Panel, ScrollArea, Ui};
 
@@ -23,11 +24,14 @@ impl App {
                 ui.selectable_value(&mut self.state.tab, Tab::Cage, "Cage").on_hover_text("Presets, cage and vertices");
                 let tip = "Dimensions and materials of the flat antenna";
                 ui.selectable_value(&mut self.state.tab, Tab::Antenna, "Antenna").on_hover_text(tip);
+                let tip = Command::ShowHistory.tooltip(ui.ctx());
+                ui.selectable_value(&mut self.state.tab, Tab::History, "History").on_hover_text(tip);
             });
             ui.separator();
-            ScrollArea::vertical().auto_shrink(false).id_salt(self.state.tab == Tab::Cage).show(ui, |ui| {
+            ScrollArea::vertical().auto_shrink(false).id_salt(self.state.tab as u8).show(ui, |ui| {
                 match self.state.tab {
                     Tab::Antenna => panel_antenna::ui(ui, &self.session.project().antenna, &mut self.state, out),
+                    Tab::History => panel_history::ui(ui, self.session.history(), out),
                     Tab::Cage => panel_cage::ui(ui, self.session.project(), pose.as_ref(), &mut self.state, out),
                 }
             });

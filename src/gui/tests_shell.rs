@@ -10,6 +10,7 @@ fn everything() -> Facts {
     Facts {
         can_undo: true,
         can_redo: true,
+        has_recent: true,
         has_selection: true,
         has_hand_edits: true,
         has_mesh: true,

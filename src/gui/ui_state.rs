@@ -7,6 +7,10 @@ use crate::tet::Metal;
 use egui::ThemePreference;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+/// Files remembered as used last: more are no menu any more.
+const MAX_RECENT_FILES: usize = 10;
 
 /// Which tab the left panel shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -16,6 +20,8 @@ pub(super) enum Tab {
     /// Cage, presets, hand edits.
     #[default]
     Cage,
+    /// Steps of the project's history.
+    History,
 }
 
 /// What is painted on the antenna.
@@ -309,7 +315,11 @@ pub(super) struct UiState {
     pub(super) guess_freq_ghz: f64,
     pub(super) guess_ohm: f64,
     /// Where the last file or folder was.
-    pub(super) last_folder: Option<std::path::PathBuf>,
+    pub(super) last_folder: Option<PathBuf>,
+    /// Files opened or saved last, newest first.
+    pub(super) recent_files: Vec<PathBuf>,
+    /// Whether the welcome was shown.
+    pub(super) is_welcomed: bool,
     /// Names of the commands used last, newest first.
     pub(super) recent_commands: Vec<String>,
     camera_kept: Option<SavedCamera>,
@@ -349,6 +359,8 @@ impl Default for UiState {
             guess_freq_ghz: 11.0,
             guess_ohm: 50.0,
             last_folder: None,
+            recent_files: Vec::new(),
+            is_welcomed: false,
             recent_commands: Vec::new(),
             camera_kept: None,
             mesh: MeshUi::default(),
@@ -366,6 +378,15 @@ impl UiState {
     /// Ends of the colour bar: the fixed ones where they are a range, else those that follow the values.
     pub(super) fn heat_range(&self, auto: [f32; 2]) -> [f32; 2] {
         self.heat_ends.filter(|[lo, hi]| lo < hi).unwrap_or(auto)
+    }
+
+    /// Notes that a file was opened or saved.
+    pub(super) fn note_recent(&mut self, path: &Path) {
+        // Where the program starts next time is not known.
+        let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        self.recent_files.retain(|other| *other != path);
+        self.recent_files.insert(0, path);
+        self.recent_files.truncate(MAX_RECENT_FILES);
     }
 
     /// Shows the mesh or the antenna; each keeps its own camera, and is fitted when it is shown first.

@@ -47,6 +47,8 @@ pub enum Edit {
     ClearHandEdits,
     /// Sets how the deformed antenna is computed.
     SetSettings(Settings),
+    /// Puts another whole project in its place.
+    Restore(Box<Project>),
 }
 
 /// Why an edit is refused; the project stays as it was.
@@ -115,6 +117,7 @@ impl Edit {
             }
             Self::ClearHandEdits => project.hand_edits.clear(),
             Self::SetSettings(settings) => project.settings = settings,
+            Self::Restore(other) => *project = *other,
         }
         Ok(())
     }

@@ -7,11 +7,14 @@
 
 pub mod check;
 pub mod edit;
+mod example;
 pub mod file;
 pub mod history;
+mod name;
 
 pub use check::ProjectError;
 pub use edit::{Edit, EditError};
+pub use example::Example;
 pub use history::History;
 
 use crate::antenna::{Dielectric, PatchParams};
