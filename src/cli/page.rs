@@ -12,7 +12,7 @@ use crate::project::file;
 use crate::report::{self, Contents, Image, MeshContents, RunContents, job_name};
 use crate::task::Task;
 use crate::tet::Metal;
-use anyhow::{Context, Result};
+use anyhow::Result;
 
 /// Most kept results that are told, the newest ones.
 const MAX_RUNS: usize = 8;
@@ -37,10 +37,9 @@ pub(super) fn run(args: &PageArgs, draw: Draw<'_>, task: &Task) -> Result<()> {
         }
         _ => None,
     };
-    let mut stored = Vec::new();
-    for found in Stored::newest(&results_dir(&args.file), MAX_RUNS) {
-        stored.push(found.context("reading the results kept beside the project")?);
-    }
+    let (stored, unread): (Vec<_>, Vec<_>) =
+        Stored::newest(&results_dir(&args.file), MAX_RUNS).into_iter().partition(Result::is_ok);
+    let stored: Vec<Stored> = stored.into_iter().flatten().collect();
     let results: Vec<RunResult> = stored.iter().map(RunResult::from).collect();
     let runs = stored.iter().zip(&results).map(|(stored, result)| RunContents {
         name: job_name(stored.job()),
@@ -76,5 +75,7 @@ pub(super) fn run(args: &PageArgs, draw: Draw<'_>, task: &Task) -> Result<()> {
         (n, 0) => format!("{n} kept results"),
         (n, stale) => format!("{n} kept results, {stale} of them out of date"),
     };
-    super::print(&format!("wrote {}: {results}{missing}", args.out.display()))
+    let unread = unread.into_iter().filter_map(Result::err).map(|e| format!("\na kept result cannot be read: {e}"));
+    let unread: String = unread.collect();
+    super::print(&format!("wrote {}: {results}{missing}{unread}", args.out.display()))
 }

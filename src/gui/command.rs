@@ -172,7 +172,7 @@ impl Command {
                 ("Save report…", "Write one page on the project with all its figures, for any browser and for print")
             }
             Self::Compare => (
-                "Before and after",
+                "Compare compensations",
                 "Compute the shape without compensation, by WL and isometrically, to be compared and looked at",
             ),
             Self::ShowGhost => ("Exact cylinder", "Draw the exact cylinder through the antenna"),

@@ -69,9 +69,11 @@ impl HeatPart {
         }
     }
 
-    /// Whether a region decides the range of the scale: the patch where everything is painted, for it matters most.
-    fn rules(self, region: &str) -> bool {
-        if self == Self::All { region == PATCH } else { self.paints(region) }
+    /// Whether a region decides the range of the scale: of strains on all parts the patch, for it matters most, and the
+    /// bend itself strains the ground much more.
+    fn rules(self, heat: Heat, region: &str) -> bool {
+        let is_strain = matches!(heat, Heat::Area | Heat::MaxStrain | Heat::MinStrain);
+        if self == Self::All && is_strain { region == PATCH } else { self.paints(region) }
     }
 }
 
@@ -108,7 +110,7 @@ impl Heated {
                     continue;
                 }
                 let own = triangle.map(|v| values[v as usize]);
-                if part.rules(region) {
+                if part.rules(heat, region) {
                     greatest = own.iter().filter(|v| v.is_finite()).fold(greatest, |m, v| m.max(v.abs()));
                 }
                 let area = (b - a).cross(c - a).length() / 2.0 * to_mm(1.0).powi(2);
@@ -143,7 +145,11 @@ impl Heated {
 
 /// Places on a scale of colours, from the top.
 pub(super) fn ticks(heat: Heat, [lo, hi]: [f32; 2]) -> [String; 5] {
-    let digits = if (hi - lo) < 2.0 { 2 } else { 1 };
+    let digits = match hi - lo {
+        width if width < 2.0 => 2,
+        width if width < 100.0 => 1,
+        _ => 0,
+    };
     [0, 1, 2, 3, 4].map(|k: u8| {
         // Adding zero turns -0 round.
         let value = hi + (lo - hi) * f32::from(k) / 4.0 + 0.0;
@@ -201,5 +207,6 @@ mod tests {
     fn ticks_have_a_unit_and_no_negative_zero() {
         assert_eq!(ticks(Heat::Area, [-0.5, 0.5]), ["+0.50 %", "+0.25 %", "0 %", "-0.25 %", "-0.50 %"], "signed");
         assert_eq!(ticks(Heat::Distance, [0.0, 40.0])[..2], ["40.0 µm", "30.0 µm"], "length");
+        assert_eq!(ticks(Heat::Distance, [0.0, 400.0])[..2], ["400 µm", "300 µm"], "greater length");
     }
 }

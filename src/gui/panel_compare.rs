@@ -61,7 +61,7 @@ pub(super) fn ui(
 
 fn table(ui: &mut Ui, compared: &crate::pipeline::compare_job::Compared) {
     let tokens = Tokens::here(ui);
-    let grid = Grid::new("compared").num_columns(4).striped(true).spacing([9.0, 3.0]).min_row_height(ROW_HEIGHT);
+    let grid = Grid::new("compared").num_columns(4).striped(true).spacing([5.0, 3.0]).min_row_height(ROW_HEIGHT);
     grid.show(ui, |ui| {
         ui.label("");
         for mode in MODES {

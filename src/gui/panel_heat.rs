@@ -6,9 +6,9 @@ use super::plot_export;
 use super::plots::PlotKind;
 use super::theme::Tokens;
 use super::ui_state::{Heat, HeatPart, UiState};
-use crate::render::colormap;
+use crate::render::{colormap, round_length};
 use egui::{Color32, ComboBox, DragValue, RichText, Ui};
-use egui_plot::{AxisHints, Bar, BarChart, Plot};
+use egui_plot::{AxisHints, Bar, BarChart, GridMark, Plot};
 
 /// Height of the histogram, points.
 const PLOT_HEIGHT: f32 = 110.0;
@@ -91,6 +91,12 @@ fn range(ui: &mut Ui, heated: &Heated, state: &mut UiState) {
     }
 }
 
+/// Two to four round marks up to a value.
+fn marks(greatest: f64) -> Vec<GridMark> {
+    let step = f64::from(round_length((greatest / 2.0) as f32));
+    (0..=4).map(|k: u8| GridMark { value: step * f64::from(k), step_size: step }).collect()
+}
+
 fn histogram(ui: &mut Ui, heated: &Heated, state: &UiState, out: &mut Outbox) {
     let heat = state.heat;
     let [lo, hi] = state.heat_range(heated.auto);
@@ -101,6 +107,7 @@ fn histogram(ui: &mut Ui, heated: &Heated, state: &UiState, out: &mut Outbox) {
         let middle = f64::from(lo) + (k as f64 + 0.5) * width;
         Bar::new(middle, percent).width(width).fill(Color32::from_rgb(r, g, b))
     };
+    let greatest = bins.iter().copied().fold(0.0, f64::max);
     let bars: Vec<Bar> = bins.iter().enumerate().map(bar).collect();
     let values = AxisHints::new_x().label(heat.axis()).label_spacing(LABEL_SPACING);
     let areas = AxisHints::new_y().label("Area (%)").label_spacing(LABEL_SPACING);
@@ -113,6 +120,7 @@ fn histogram(ui: &mut Ui, heated: &Heated, state: &UiState, out: &mut Outbox) {
         .include_x(f64::from(lo))
         .include_x(f64::from(hi))
         .include_y(0.0)
+        .y_grid_spacer(move |_| marks(greatest))
         .custom_x_axes(vec![values])
         .custom_y_axes(vec![areas])
         .show_x(false)

@@ -142,7 +142,9 @@ impl SceneBuilder {
         let positions = self.ghost.as_ref()?.1.clone();
         let shape = self.shape(&shown.deformed.flat);
         let color = rgba(tokens.ideal);
-        let parts = shape.parts.iter().filter(|(name, _)| matches!(name.as_str(), SUBSTRATE | PATCH));
+        // Over painted parts its outlines alone are drawn: a veil would falsify the colours.
+        let is_veil = state.heat == Heat::None;
+        let parts = shape.parts.iter().filter(|(name, _)| is_veil && matches!(name.as_str(), SUBSTRATE | PATCH));
         let parts = parts
             .map(|(_, triangles)| Part { opacity: GHOST_OPACITY, ..Part::new(triangles.clone(), Paint::Matt(color)) });
         let surface = Surface { positions: positions.clone(), parts: parts.collect(), scalars: None };
