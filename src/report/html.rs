@@ -103,7 +103,7 @@ impl Page {
     }
 
     /// The figures that matter most: value and name.
-    pub(super) fn key_figures(&mut self, figures: &[(String, &str)]) {
+    pub(super) fn key_figures(&mut self, figures: &[(String, String)]) {
         self.text.push_str("<ul class=\"key\">\n");
         for (value, name) in figures {
             self.text.push_str(&format!("<li><b>{}</b><span>{}</span></li>\n", escaped(value), escaped(name)));

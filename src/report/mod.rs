@@ -1,7 +1,7 @@
 //! One self-contained HTML page on a project: what was decided, what was computed of it, and what was not.
 //!
 //! Enters: a [`Contents`] of plain values, each with whether it still belongs to the project as it is. Leaves: one
-//! text ([`html`]) with all pictures inlined, no script and no reference to anything outside, to be read in any
+//! text ([`html()`]) with all pictures inlined, no script and no reference to anything outside, to be read in any
 //! browser, printed and kept. All text of the user is escaped; the markup is well-formed as XML. Numbers have their
 //! units; what was not computed is said, not left out.
 //!

@@ -45,15 +45,15 @@ pub(super) fn summary(page: &mut Page, contents: &Contents<'_>) {
     let mut figures = Vec::new();
     if let Ok(deformed) = &contents.deformed {
         let f = &deformed.figures;
-        figures.push((percent(f.rho_patch), "surface error \u{3c1} of the patch"));
-        figures.push((percent(f.length_error), "error of the length L"));
-        figures.push((format!("{:.2} %", 100.0 * f.patch_strain), "largest strain of the patch"));
+        figures.push((percent(f.rho_patch), "surface error \u{3c1} of the patch".to_owned()));
+        figures.push((percent(f.length_error), "error of the length L".to_owned()));
+        figures.push((format!("{:.2} %", 100.0 * f.patch_strain), "largest strain of the patch".to_owned()));
     }
     let newest = contents.runs.iter().rfind(|run| !run.is_stale);
-    if let Some(found) = newest.and_then(|run| run.result.resonance) {
-        figures.push((ghz(found.freq), "resonance (smallest |S11|)"));
+    if let Some((run, found)) = newest.and_then(|run| Some((run, run.result.resonance?))) {
+        figures.push((ghz(found.freq), format!("resonance: {}", run.name)));
         if let Some([lo, hi]) = found.band {
-            figures.push((format!("{:.0} MHz", (hi - lo) / 1e6), "\u{2212}10 dB band"));
+            figures.push((format!("{:.0} MHz", (hi - lo) / 1e6), format!("\u{2212}10 dB band: {}", run.name)));
         }
     }
     if !figures.is_empty() {
@@ -86,7 +86,9 @@ fn value_text(value: &Value, unit: &str) -> String {
 /// Rows of an object of the project's file, with those within it behind its name.
 fn rows_of(value: &Value, before: &str, rows: &mut Vec<(String, String)>) {
     let Value::Object(fields) = value else { return };
-    for (key, value) in fields {
+    // What kind of thing it is comes before its numbers.
+    let (first, others): (Vec<_>, Vec<_>) = fields.iter().partition(|(key, _)| *key == "kind");
+    for (key, value) in first.into_iter().chain(others) {
         let (name, unit) = key_and_unit(key);
         let name = if before.is_empty() { name } else { format!("{before}, {name}") };
         match value {
@@ -224,7 +226,9 @@ pub(super) fn compensation(page: &mut Page, contents: &Contents<'_>) {
     page.paragraph(&format!("Way: {text}. Errors before each iteration; the last row is what remains."));
     let row = |(k, s): (usize, &CompensationStep)| {
         let errors = [s.width_error, s.length_error, s.thickness_error, s.radius_error, s.patch_strain];
-        std::iter::once(k.to_string()).chain(errors.map(|e| format!("{:+.4} %", 100.0 * e + 0.0))).collect()
+        // Exactly zero stands for "not measured in this step".
+        let text = |e: f64| if e.abs() > 0.0 { format!("{:+.4} %", 100.0 * e) } else { "\u{2013}".to_owned() };
+        std::iter::once(k.to_string()).chain(errors.map(text)).collect()
     };
     let rows: Vec<Vec<String>> = deformed.compensation.iter().enumerate().map(row).collect();
     page.table(&["Iteration", "width W", "length L", "height h", "radius R", "largest strain"], &rows);
