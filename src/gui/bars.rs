@@ -48,7 +48,9 @@ pub(super) const MENUS: [Menu; 6] = [
                 C::Orthographic,
             ],
             &[C::ShowCage, C::SeeThrough, C::ShowGhost, C::ShowMesh, C::ShowPattern],
-            &[C::ShowResults, C::ShowLog],
+            &[C::ShowResults, C::ShowLog, C::ShowLeft, C::ShowRight, C::ResetLayout],
+            &[C::ZoomIn, C::ZoomOut, C::ZoomReset],
+            &[C::NextPanel, C::PreviousPanel],
         ],
     ),
     (

@@ -4,7 +4,7 @@
 
 use crate::project::Example;
 use crate::render::StandardView;
-use egui::{Context, Key, KeyboardShortcut, Modifiers, ThemePreference, os::OperatingSystem};
+use egui::{Key, KeyboardShortcut, Modifiers, ThemePreference, os::OperatingSystem};
 
 /// Something the user can ask for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,6 +44,14 @@ pub(super) enum Command {
     SeeThrough,
     ShowHistory,
     ShowLog,
+    ShowLeft,
+    ShowRight,
+    ResetLayout,
+    ZoomIn,
+    ZoomOut,
+    ZoomReset,
+    NextPanel,
+    PreviousPanel,
     Theme(ThemePreference),
     Palette,
     Keys,
@@ -73,6 +81,8 @@ pub(super) struct Facts {
     pub(super) sees_through: bool,
     pub(super) shows_log: bool,
     pub(super) shows_history: bool,
+    pub(super) shows_left: bool,
+    pub(super) shows_right: bool,
     pub(super) selects_by_box: bool,
     pub(super) is_painted: bool,
     pub(super) is_comparing: bool,
@@ -125,6 +135,14 @@ impl Command {
         Self::SeeThrough,
         Self::ShowHistory,
         Self::ShowLog,
+        Self::ShowLeft,
+        Self::ShowRight,
+        Self::ResetLayout,
+        Self::ZoomIn,
+        Self::ZoomOut,
+        Self::ZoomReset,
+        Self::NextPanel,
+        Self::PreviousPanel,
         Self::Theme(ThemePreference::System),
         Self::Theme(ThemePreference::Light),
         Self::Theme(ThemePreference::Dark),
@@ -191,6 +209,16 @@ impl Command {
             Self::SeeThrough => ("See-through substrate", "Show the pin and the ground through the substrate"),
             Self::ShowHistory => ("History", "List every step of the project; go back to any of them"),
             Self::ShowLog => ("Messages", "Show the messages since the program began"),
+            Self::ShowLeft => ("Left side", "Show the panels on the left of the view"),
+            Self::ShowRight => ("Right side", "Show the panels on the right of the view"),
+            Self::ResetLayout => {
+                ("Reset layout", "Put panels, tabs and sizes back to where they were at the first start")
+            }
+            Self::ZoomIn => ("Larger interface", "Make text and controls larger"),
+            Self::ZoomOut => ("Smaller interface", "Make text and controls smaller"),
+            Self::ZoomReset => ("Normal interface", "Text and controls in their normal size"),
+            Self::NextPanel => ("Next panel", "Give the keys to the next panel; Tab goes on within it"),
+            Self::PreviousPanel => ("Previous panel", "Give the keys to the panel before"),
             Self::Theme(ThemePreference::System) => ("As the system", "Light or dark as the desktop is"),
             Self::Theme(ThemePreference::Light) => ("Light", "Dark lettering on a light ground"),
             Self::Theme(ThemePreference::Dark) => ("Dark", "Light lettering on a dark ground"),
@@ -247,9 +275,16 @@ impl Command {
             Self::ShowCage => vec![plain(Key::C)],
             Self::SeeThrough => vec![plain(Key::T)],
             Self::ShowHistory => vec![command(Key::H)],
+            Self::ShowLeft => vec![plain(Key::F8)],
+            Self::ShowRight => vec![plain(Key::F9)],
+            Self::ZoomIn => vec![command(Key::Plus), command(Key::Equals)],
+            Self::ZoomOut => vec![command(Key::Minus)],
+            Self::ZoomReset => vec![command(Key::Num0)],
+            Self::NextPanel => vec![plain(Key::F6)],
+            Self::PreviousPanel => vec![KeyboardShortcut::new(Modifiers::SHIFT, Key::F6)],
             Self::Palette => vec![command_shift(Key::P)],
             Self::Keys => vec![plain(Key::F1)],
-            Self::ClearRecent | Self::Welcome | Self::Example(_) => Vec::new(),
+            Self::ResetLayout | Self::ClearRecent | Self::Welcome | Self::Example(_) => Vec::new(),
             Self::ResetAll
             | Self::CompensateNot
             | Self::SavePlot
@@ -306,76 +341,13 @@ impl Command {
             Self::ShowCage => Some(facts.shows_cage),
             Self::SeeThrough => Some(facts.sees_through),
             Self::ShowHistory => Some(facts.shows_history),
+            Self::ShowLeft => Some(facts.shows_left),
+            Self::ShowRight => Some(facts.shows_right),
             Self::ShowLog => Some(facts.shows_log),
             Self::BoxSelect => Some(facts.selects_by_box),
             Self::Theme(theme) => Some(facts.theme == Some(theme)),
             _ => None,
         }
-    }
-
-    /// What its tooltip says: what it does and its keys.
-    pub(super) fn tooltip(self, ctx: &Context) -> String {
-        let (_, tip) = self.text_and_tip();
-        let keys: Vec<String> = self.keys(ctx.os()).iter().map(|k| ctx.format_shortcut(k)).collect();
-        if keys.is_empty() { tip.to_owned() } else { format!("{tip} ({})", keys.join(", ")) }
-    }
-
-    /// The commands whose keys were pressed in this frame, if they can be used; keys are consumed.
-    ///
-    /// Keys that mean something to a text field belong to it while one is being edited.
-    pub(super) fn pressed(ctx: &Context, facts: &Facts) -> Vec<Self> {
-        let os = ctx.os();
-        let typing = ctx.text_edit_focused();
-        let mut keys: Vec<(KeyboardShortcut, Self)> =
-            Self::ALL.iter().flat_map(|&c| c.keys(os).into_iter().map(move |k| (k, c))).collect();
-        // A shortcut matches with extra modifiers too, so the ones with more modifiers go first.
-        keys.sort_by_key(|(k, _)| std::cmp::Reverse(usize::from(k.modifiers.any()) + usize::from(k.modifiers.shift)));
-        // Letters and digits, and the keys by which text is selected, undone and redone.
-        let is_text = |k: &KeyboardShortcut| {
-            let edits_text = matches!(k.logical_key, Key::A | Key::Z | Key::Y);
-            (k.modifiers.is_none() && !matches!(k.logical_key, Key::F1 | Key::F5)) || edits_text
-        };
-        let mut found = Vec::new();
-        for (shortcut, command) in keys {
-            if !(typing && is_text(&shortcut)) && ctx.input_mut(|i| i.consume_shortcut(&shortcut)) {
-                found.push(command);
-            }
-        }
-        found.retain(|c| c.is_enabled(facts));
-        found
-    }
-
-    /// Draws it as a line of a menu; true if it was chosen.
-    pub(super) fn menu_item(self, ui: &mut egui::Ui, facts: &Facts) -> bool {
-        let (text, _) = self.text_and_tip();
-        let keys = self.keys(ui.ctx().os());
-        let mut button = match self.is_ticked(facts) {
-            Some(ticked) => egui::Button::selectable(ticked, text),
-            None => egui::Button::new(text),
-        };
-        if let Some(shortcut) = keys.first() {
-            button = button.shortcut_text(ui.ctx().format_shortcut(shortcut));
-        }
-        self.add(ui, facts, button)
-    }
-
-    /// Draws it as a button of the toolbar; true if it was pressed.
-    pub(super) fn tool_button(self, ui: &mut egui::Ui, facts: &Facts) -> bool {
-        let (text, _) = self.text_and_tip();
-        let text = text.trim_end_matches('…');
-        let button = match self.is_ticked(facts) {
-            Some(ticked) => egui::Button::new(text).selected(ticked),
-            None => egui::Button::new(text),
-        };
-        self.add(ui, facts, button)
-    }
-
-    fn add(self, ui: &mut egui::Ui, facts: &Facts, button: egui::Button<'_>) -> bool {
-        let tip = self.tooltip(ui.ctx());
-        let why_not = self.why_not(facts);
-        let response = ui.add_enabled(why_not.is_none(), button);
-        let why_not = why_not.map_or_else(String::new, |why| format!("{tip}\nNot now: {why}"));
-        response.on_hover_text(tip).on_disabled_hover_text(why_not).clicked()
     }
 }
 

@@ -20,6 +20,7 @@
 mod app;
 mod bars;
 mod command;
+mod command_input;
 mod compare_session;
 mod dialogs;
 mod disk;

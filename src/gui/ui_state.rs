@@ -306,6 +306,10 @@ pub(super) struct UiState {
     /// The way of compensation that is looked at instead of the project's own.
     #[serde(skip)]
     pub(super) preview: Option<CompensationMode>,
+    /// Size of the interface, as a factor.
+    pub(super) scale: f32,
+    pub(super) shows_left: bool,
+    pub(super) shows_right: bool,
     pub(super) shows_cage: bool,
     pub(super) sees_through: bool,
     pub(super) shows_log: bool,
@@ -352,6 +356,9 @@ impl Default for UiState {
             heat_ends: None,
             shows_ghost: false,
             preview: None,
+            scale: 1.0,
+            shows_left: true,
+            shows_right: true,
             shows_cage: true,
             sees_through: false,
             shows_log: false,
