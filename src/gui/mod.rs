@@ -45,6 +45,7 @@ mod panel_compensation;
 mod panel_distortion;
 mod panel_heat;
 mod panel_history;
+mod panel_materials;
 mod panel_mesh;
 mod panel_results;
 mod panel_solve;
@@ -67,6 +68,8 @@ mod solve_session;
 mod status;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_materials;
 #[cfg(test)]
 mod tests_mesh;
 #[cfg(test)]

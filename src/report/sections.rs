@@ -78,6 +78,7 @@ fn value_text(value: &Value, unit: &str) -> String {
         Value::Array(items) => items.iter().map(|v| value_text(v, "")).collect::<Vec<_>>().join(", "),
         Value::Null => "none".to_owned(),
         Value::Bool(yes) => if *yes { "yes" } else { "no" }.to_owned(),
+        Value::Number(number) => number.as_f64().unwrap_or(f64::NAN).to_string(),
         other => other.to_string(),
     };
     if unit.is_empty() { text } else { format!("{text} {unit}") }
