@@ -112,11 +112,15 @@ fn break_lines(text: &str, columns: usize) -> String {
 pub(super) fn ui(ui: &mut Ui, session: &Session, messages: &Messages, state: &mut UiState, out: &mut Outbox) {
     let tokens = Tokens::here(ui);
     ui.horizontal(|ui| {
-        if session.is_busy() && !session.in_gesture() {
+        let play = session.play();
+        if session.is_busy() && !session.in_gesture() && !play.is_on() {
             busy(ui, session, out);
         } else if let Some(message) = session.refusal() {
             let text = RichText::new(format!("⚠ {message}")).color(tokens.error);
             ui.add(egui::Label::new(text).truncate()).on_hover_text(message);
+        } else if play.is_on() {
+            let text = format!("{:.0} % of the deformation, for looking only", 100.0 * play.amount);
+            ui.label(RichText::new(text).color(tokens.warning));
         } else if session.in_gesture() {
             ui.label(RichText::new("Preview: computed in full when you let go").color(tokens.weak));
         } else if session.finished().is_some() {
