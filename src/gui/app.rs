@@ -5,6 +5,7 @@ use super::dialogs::{About, Dialog, Next};
 use super::disk::Disk;
 use super::edit_ui::Outline;
 use super::export_dialog::ExportDialog;
+use super::frame::set_scale;
 use super::mesh_export::MeshExport;
 use super::mesh_session::{MeshNews, MeshSession};
 use super::outbox::{Action, Outbox};
@@ -13,17 +14,17 @@ use super::recovery::Recovery;
 use super::result_export::ResultExport;
 use super::session::{News, Session, first_project};
 use super::solve_session::{SolveNews, SolveSession};
-use super::status::{self, Messages, Weight};
+use super::status::{Messages, Weight};
 use super::theme;
 use super::ui_state::{RightTab, Tab, UiState};
-use super::viewport::{Sources, Viewport};
-use super::{APP_ID, bars, paint, palette, panel_results};
+use super::viewport::Viewport;
+use super::{APP_ID, paint, palette};
 use crate::pipeline::mesh_job::MeshJob;
 use crate::pipeline::solve_job::SolveJob;
 use crate::pipeline::worker::Worker;
 use crate::project::{CompensationMode, Edit, PresetEntry, Settings};
 use crate::render::Projection;
-use egui::{CentralPanel, Frame, Panel, Ui, ViewportCommand};
+use egui::{Rect, Ui, ViewportCommand};
 use std::path::{Path, PathBuf};
 
 const STATE_KEY: &str = "window";
@@ -38,6 +39,8 @@ pub(super) struct App {
     pub(super) viewport: Viewport,
     pub(super) dialog: Dialog,
     pub(super) messages: Messages,
+    /// Where the panels are, in the order in which a key goes through them.
+    pub(super) areas: Vec<Rect>,
     pub(super) recovery: Recovery,
     pub(super) disk: Disk,
     /// Whether the window had the focus in the last frame.
@@ -45,7 +48,7 @@ pub(super) struct App {
     /// Whether another program has changed the file and the user was not asked yet.
     pub(super) asks_to_reload: bool,
     /// Whether the window may close without asking.
-    may_close: bool,
+    pub(super) may_close: bool,
     /// The window's title as last set.
     title: String,
 }
@@ -60,6 +63,10 @@ impl App {
         let mut state: UiState = cc.storage.and_then(|s| eframe::get_value(s, STATE_KEY)).unwrap_or_default();
         state.restore_camera();
         cc.egui_ctx.set_theme(state.theme);
+        // The keys are commands of ours, and the size is remembered with the rest.
+        cc.egui_ctx.options_mut(|options| options.zoom_with_keyboard = false);
+        let scale = state.scale;
+        set_scale(&cc.egui_ctx, &mut state, scale);
         let wake = || {
             let ctx = cc.egui_ctx.clone();
             move || ctx.request_repaint()
@@ -73,6 +80,7 @@ impl App {
             viewport: Viewport::default(),
             dialog: Dialog::None,
             messages: Messages::default(),
+            areas: Vec::new(),
             recovery: Recovery::new(recovery_folder(cc)),
             disk: Disk::spawn(wake()),
             has_focus: true,
@@ -118,7 +126,9 @@ impl App {
             mirrors: self.state.editing.mirrors,
             can_play: self.session.can_play(),
             is_playing: self.session.play().is_on(),
-            shows_history: self.state.tab == Tab::History,
+            shows_history: self.state.tab == Tab::History && self.state.shows_left,
+            shows_left: self.state.shows_left,
+            shows_right: self.state.shows_right,
             theme: Some(self.state.theme),
         }
     }
@@ -159,13 +169,7 @@ impl App {
             Action::SavePlot(kind) => self.ask_plot(kind),
             Action::Say(weight, text) => self.messages.say(weight, &text),
             Action::OpenPath(path) => self.open(&path),
-            Action::SavePath(path) => {
-                let then = match &self.dialog {
-                    Dialog::Path(dialog) => dialog.then.clone(),
-                    _ => None,
-                };
-                self.save(ctx, &path, then);
-            }
+            Action::SavePath(path, then) => self.save(ctx, &path, then),
             Action::SaveThen(next) => self.save_then(ctx, Some(next)),
             Action::SaveOver(path, then) => self.save_over(ctx, &path, then),
             Action::AskSave(then) => self.ask_save(then),
@@ -218,7 +222,7 @@ impl App {
             Command::Compensate => self.compensate(CompensationMode::Isometric),
             Command::CompensateNot => self.compensate(CompensationMode::None),
             Command::Mesh => {
-                state.right_tab = RightTab::Mesh;
+                (state.right_tab, state.shows_right) = (RightTab::Mesh, true);
                 self.mesh.start(self.session.project(), &state.mesh);
             }
             Command::ExportMesh => {
@@ -230,7 +234,7 @@ impl App {
             }
             Command::ShowMesh => state.show_mesh(!state.mesh.shows),
             Command::Solve => {
-                state.right_tab = RightTab::Solve;
+                (state.right_tab, state.shows_right) = (RightTab::Solve, true);
                 state.solve.shows_results = true;
                 self.solve.start(self.session.project(), &state.solve);
             }
@@ -368,31 +372,7 @@ impl eframe::App for App {
         if !is_modal && !self.viewport.is_dragging() {
             out.actions.extend(Command::pressed(&ctx, &facts).into_iter().map(Action::Run));
         }
-        Panel::top("menus").show(ui, |ui| bars::menus(ui, &facts, &self.state.recent_files, &mut out));
-        Panel::top("tools").show(ui, |ui| bars::toolbar(ui, &facts, &mut out));
-        Panel::bottom("status").show(ui, |ui| {
-            status::ui(ui, &self.session, &self.messages, &mut self.state, &mut out);
-        });
-        if self.state.shows_log {
-            Panel::bottom("log").resizable(true).default_size(110.0).show(ui, |ui| self.messages.log(ui));
-        }
-        let mut raised = 0.0;
-        if self.state.solve.shows_results {
-            let panel = Panel::bottom("results").resizable(true).default_size(panel_results::HEIGHT);
-            let shown = panel.size_range(panel_results::HEIGHTS).show(ui, |ui| {
-                let (project, chosen) = (self.session.project(), &mut self.state.solve);
-                panel_results::ui(ui, project, &self.solve, &facts, chosen, &mut out);
-            });
-            raised = shown.response.rect.height();
-        }
-        self.side_panels(ui, &facts, &mut out);
-        let pose = self.session.pose().cloned();
-        CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
-            let mesh = self.mesh.shown().filter(|_| self.state.mesh.shows);
-            let solve = Some(&self.solve).filter(|_| self.state.solve.shows_pattern);
-            let sources = Sources { session: &self.session, pose: pose.as_ref(), mesh, solve };
-            self.viewport.ui(ui, sources, &mut self.state, &mut out);
-        });
+        let raised = self.panels(ui, &facts, &mut out);
         let about = About {
             name: &self.session.name(),
             is_dirty: self.session.history().is_dirty(),

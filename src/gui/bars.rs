@@ -64,7 +64,9 @@ pub(super) const MENUS: [Menu; 8] = [
                 C::Orthographic,
             ],
             &[C::ShowCage, C::SeeThrough, C::ShowMesh, C::ShowPattern],
-            &[C::ShowResults, C::ShowLog],
+            &[C::ShowResults, C::ShowLog, C::ShowLeft, C::ShowRight, C::ResetLayout],
+            &[C::ZoomIn, C::ZoomOut, C::ZoomReset],
+            &[C::NextPanel, C::PreviousPanel],
         ],
     ),
     (

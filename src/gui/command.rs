@@ -5,7 +5,7 @@
 use super::selecting::Pick;
 use crate::project::Example;
 use crate::render::{Operator, StandardView};
-use egui::{Context, ThemePreference};
+use egui::ThemePreference;
 
 /// Something the user can ask for. `Mirror` holds the number of the axis across whose mid-plane edits are mirrored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,6 +48,14 @@ pub(super) enum Command {
     SeeThrough,
     ShowHistory,
     ShowLog,
+    ShowLeft,
+    ShowRight,
+    ResetLayout,
+    ZoomIn,
+    ZoomOut,
+    ZoomReset,
+    NextPanel,
+    PreviousPanel,
     Theme(ThemePreference),
     Palette,
     Keys,
@@ -77,6 +85,8 @@ pub(super) struct Facts {
     pub(super) sees_through: bool,
     pub(super) shows_log: bool,
     pub(super) shows_history: bool,
+    pub(super) shows_left: bool,
+    pub(super) shows_right: bool,
     pub(super) selects_by_box: bool,
     pub(super) selects_by_lasso: bool,
     pub(super) snaps: bool,
@@ -145,6 +155,14 @@ impl Command {
         Self::SeeThrough,
         Self::ShowHistory,
         Self::ShowLog,
+        Self::ShowLeft,
+        Self::ShowRight,
+        Self::ResetLayout,
+        Self::ZoomIn,
+        Self::ZoomOut,
+        Self::ZoomReset,
+        Self::NextPanel,
+        Self::PreviousPanel,
         Self::Theme(ThemePreference::System),
         Self::Theme(ThemePreference::Light),
         Self::Theme(ThemePreference::Dark),
@@ -204,20 +222,22 @@ impl Command {
             Self::ExportResults => ("Export results…", "Write a run's reflection as a table or a Touchstone file"),
             Self::SavePlot => ("Save plot…", "Save a plot as SVG, PNG or CSV, as it would be printed"),
             Self::Fit => ("Fit", "Show all of the antenna and its cage, or of the mesh"),
-            Self::LookFrom(view) => match view {
-                StandardView::Front => ("Front", "Look along +y, x to the right"),
-                StandardView::Back => ("Back", "Look along -y"),
-                StandardView::Right => ("Right", "Look from +x"),
-                StandardView::Left => ("Left", "Look from -x"),
-                StandardView::Top => ("Top", "Look down, x to the right and y up"),
-                StandardView::Bottom => ("Bottom", "Look up at the ground plane"),
-                StandardView::Isometric => ("Isometric", "Look from +x, -y and +z"),
-            },
+            Self::LookFrom(view) => view_text(view),
             Self::Orthographic => ("Orthographic", "No perspective: equal lengths look equal"),
             Self::ShowCage => ("Cage", "Show the cage and its vertices"),
             Self::SeeThrough => ("See-through substrate", "Show the pin and the ground through the substrate"),
             Self::ShowHistory => ("History", "List every step of the project; go back to any of them"),
             Self::ShowLog => ("Messages", "Show the messages since the program began"),
+            Self::ShowLeft => ("Left side", "Show the panels on the left of the view"),
+            Self::ShowRight => ("Right side", "Show the panels on the right of the view"),
+            Self::ResetLayout => {
+                ("Reset layout", "Put panels, tabs and sizes back to where they were at the first start")
+            }
+            Self::ZoomIn => ("Larger interface", "Make text and controls larger"),
+            Self::ZoomOut => ("Smaller interface", "Make text and controls smaller"),
+            Self::ZoomReset => ("Normal interface", "Text and controls in their normal size"),
+            Self::NextPanel => ("Next panel", "Give the keys to the next panel; Tab goes on within it"),
+            Self::PreviousPanel => ("Previous panel", "Give the keys to the panel before"),
             Self::Theme(ThemePreference::System) => ("As the system", "Light or dark as the desktop is"),
             Self::Theme(ThemePreference::Light) => ("Light", "Dark lettering on a light ground"),
             Self::Theme(ThemePreference::Dark) => ("Dark", "Light lettering on a dark ground"),
@@ -281,6 +301,8 @@ impl Command {
             Self::ShowCage => Some(facts.shows_cage),
             Self::SeeThrough => Some(facts.sees_through),
             Self::ShowHistory => Some(facts.shows_history),
+            Self::ShowLeft => Some(facts.shows_left),
+            Self::ShowRight => Some(facts.shows_right),
             Self::ShowLog => Some(facts.shows_log),
             Self::BoxSelect => Some(facts.selects_by_box),
             Self::LassoSelect => Some(facts.selects_by_lasso),
@@ -292,45 +314,18 @@ impl Command {
             _ => None,
         }
     }
+}
 
-    /// What its tooltip says: what it does and its keys.
-    pub(super) fn tooltip(self, ctx: &Context) -> String {
-        let (_, tip) = self.text_and_tip();
-        let keys: Vec<String> = self.keys(ctx.os()).iter().map(|k| ctx.format_shortcut(k)).collect();
-        if keys.is_empty() { tip.to_owned() } else { format!("{tip} ({})", keys.join(", ")) }
-    }
-
-    /// Draws it as a line of a menu; true if it was chosen.
-    pub(super) fn menu_item(self, ui: &mut egui::Ui, facts: &Facts) -> bool {
-        let (text, _) = self.text_and_tip();
-        let keys = self.keys(ui.ctx().os());
-        let mut button = match self.is_ticked(facts) {
-            Some(ticked) => egui::Button::selectable(ticked, text),
-            None => egui::Button::new(text),
-        };
-        if let Some(shortcut) = keys.first() {
-            button = button.shortcut_text(ui.ctx().format_shortcut(shortcut));
-        }
-        self.add(ui, facts, button)
-    }
-
-    /// Draws it as a button of the toolbar; true if it was pressed.
-    pub(super) fn tool_button(self, ui: &mut egui::Ui, facts: &Facts) -> bool {
-        let (text, _) = self.text_and_tip();
-        let text = text.trim_end_matches('…');
-        let button = match self.is_ticked(facts) {
-            Some(ticked) => egui::Button::new(text).selected(ticked),
-            None => egui::Button::new(text),
-        };
-        self.add(ui, facts, button)
-    }
-
-    fn add(self, ui: &mut egui::Ui, facts: &Facts, button: egui::Button<'_>) -> bool {
-        let tip = self.tooltip(ui.ctx());
-        let why_not = self.why_not(facts);
-        let response = ui.add_enabled(why_not.is_none(), button);
-        let why_not = why_not.map_or_else(String::new, |why| format!("{tip}\nNot now: {why}"));
-        response.on_hover_text(tip).on_disabled_hover_text(why_not).clicked()
+/// Text and tooltip of a view.
+fn view_text(view: StandardView) -> (&'static str, &'static str) {
+    match view {
+        StandardView::Front => ("Front", "Look along +y, x to the right"),
+        StandardView::Back => ("Back", "Look along -y"),
+        StandardView::Right => ("Right", "Look from +x"),
+        StandardView::Left => ("Left", "Look from -x"),
+        StandardView::Top => ("Top", "Look down, x to the right and y up"),
+        StandardView::Bottom => ("Bottom", "Look up at the ground plane"),
+        StandardView::Isometric => ("Isometric", "Look from +x, -y and +z"),
     }
 }
 

@@ -184,7 +184,7 @@ fn has_session_bus() -> bool {
 pub(super) struct PathDialog {
     field: PathField,
     /// What follows the saving.
-    pub(super) then: Option<Next>,
+    then: Option<Next>,
     overwrite: Option<PathBuf>,
 }
 
@@ -223,7 +223,7 @@ impl PathDialog {
                 self.overwrite = Some(path);
                 return close;
             }
-            out.push(if saves { Action::SavePath(path) } else { Action::OpenPath(path) });
+            out.push(if saves { Action::SavePath(path, self.then.clone()) } else { Action::OpenPath(path) });
             return true;
         }
         close

@@ -1,10 +1,23 @@
-//! The frame around the view: what is shown of it.
+//! The frame around the view: size of the interface, sides shown, and the way from panel to panel by key.
 
 use super::app::App;
-use super::command::Command;
-use super::ui_state::Tab;
+use super::command::{Command, Facts};
+use super::outbox::Outbox;
+use super::status::{self, Workers};
+use super::ui_state::{Tab, UiState};
+use super::viewport::Sources;
+use super::{bars, panel_results};
 use crate::render::Projection;
-use egui::Context;
+use egui::containers::panel::PanelState;
+use egui::{CentralPanel, Context, Frame, Id, LayerId, Panel, Rect, Ui};
+
+/// Width of a panel's edge, points.
+const EDGE: f32 = 4.0;
+/// Height of the list of messages at first, points.
+const LOG_HEIGHT: f32 = 110.0;
+/// Smallest and largest size of the interface, and the step between.
+const SCALES: [f32; 2] = [0.7, 2.0];
+const SCALE_STEP: f32 = 0.1;
 
 impl App {
     /// Carries out the commands that change what is seen and nothing else.
@@ -22,14 +35,105 @@ impl App {
             Command::ShowCage => state.shows_cage = !state.shows_cage,
             Command::SeeThrough => state.sees_through = !state.sees_through,
             Command::ShowHistory => {
-                state.tab = if state.tab == Tab::History { Tab::Cage } else { Tab::History };
+                let is_shown = state.tab == Tab::History && state.shows_left;
+                state.tab = if is_shown { Tab::Cage } else { Tab::History };
+                state.shows_left = true;
             }
             Command::ShowLog => state.shows_log = !state.shows_log,
             Command::Theme(theme) => {
                 state.theme = theme;
                 ctx.set_theme(theme);
             }
+            Command::ShowLeft => state.shows_left = !state.shows_left,
+            Command::ShowRight => state.shows_right = !state.shows_right,
+            Command::ResetLayout => reset_layout(ctx, state),
+            Command::ZoomIn => set_scale(ctx, state, state.scale + SCALE_STEP),
+            Command::ZoomOut => set_scale(ctx, state, state.scale - SCALE_STEP),
+            Command::ZoomReset => set_scale(ctx, state, 1.0),
+            Command::NextPanel => self.focus_panel(ctx, true),
+            Command::PreviousPanel => self.focus_panel(ctx, false),
             other => debug_assert!(false, "{other:?} is not carried out"),
         }
     }
+
+    /// Draws everything around the view and the view; returns how far notifications are raised over the status line.
+    pub(super) fn panels(&mut self, ui: &mut Ui, facts: &Facts, out: &mut Outbox) -> f32 {
+        let recent = &self.state.recent_files;
+        let menus = Panel::top("menus").show(ui, |ui| bars::menus(ui, facts, recent, out)).response.rect;
+        let tools = Panel::top("tools").show(ui, |ui| bars::toolbar(ui, facts, out)).response.rect;
+        let status = Panel::bottom("status").show(ui, |ui| {
+            let workers = Workers { session: &self.session, mesh: &self.mesh, solve: &self.solve };
+            status::ui(ui, workers, &self.messages, &mut self.state, out);
+        });
+        let log = self.state.shows_log.then(|| {
+            let panel = Panel::bottom("log").resizable(true).default_size(LOG_HEIGHT);
+            panel.show(ui, |ui| self.messages.log(ui)).response.rect
+        });
+        let results = self.state.solve.shows_results.then(|| {
+            let panel = Panel::bottom("results").resizable(true).default_size(panel_results::HEIGHT);
+            let shown = panel.size_range(panel_results::HEIGHTS).show(ui, |ui| {
+                let (project, chosen) = (self.session.project(), &mut self.state.solve);
+                panel_results::ui(ui, project, &self.solve, facts, chosen, out);
+            });
+            shown.response.rect
+        });
+        let [left, right] = self.side_panels(ui, facts, out);
+        let pose = self.session.pose().cloned();
+        let view = CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
+            let mesh = self.mesh.shown().filter(|_| self.state.mesh.shows);
+            let solve = Some(&self.solve).filter(|_| self.state.solve.shows_pattern);
+            let sources = Sources { session: &self.session, pose: pose.as_ref(), mesh, solve };
+            self.viewport.ui(ui, sources, &mut self.state, out);
+        });
+        let (status, view) = (status.response.rect, view.response.rect);
+        let all = [Some(menus), Some(tools), left, Some(view), right, results, log, Some(status)];
+        self.areas = all.into_iter().flatten().collect();
+        results.map_or(0.0, |rect| rect.height()) + log.map_or(0.0, |rect| rect.height())
+    }
+
+    /// Gives the keys to the first control of the next panel that has one.
+    fn focus_panel(&self, ctx: &Context, is_forward: bool) {
+        let count = self.areas.len();
+        let focused = ctx.memory(|m| m.focused());
+        let rect = focused.and_then(|id| ctx.viewport(|v| v.prev_pass.widgets.get(id).map(|w| w.rect)));
+        let here = rect.and_then(|rect| self.areas.iter().position(|area| area.contains(rect.center())));
+        let order = (1..=count).map(|step| match here {
+            Some(here) if is_forward => (here + step) % count,
+            Some(here) => (here + count - step) % count,
+            None if is_forward => step - 1,
+            None => count - step,
+        });
+        if let Some(id) = order.filter_map(|k| first_control(ctx, self.areas[k])).next() {
+            ctx.memory_mut(|m| m.request_focus(id));
+        }
+    }
+}
+
+/// The first control within an area that the keys can reach.
+fn first_control(ctx: &Context, area: Rect) -> Option<Id> {
+    ctx.viewport(|viewport| {
+        let widgets = &viewport.prev_pass.widgets;
+        let mut all = widgets.get_layer(LayerId::background());
+        // The edges by which panels are resized are in none.
+        let area = area.shrink(EDGE);
+        let control = all.find(|w| w.enabled && w.sense.is_focusable() && area.contains(w.rect.center()));
+        control.map(|w| w.id)
+    })
+}
+
+/// Sets the size of the interface as it is remembered; a size from elsewhere may be out of range.
+pub(super) fn set_scale(ctx: &Context, state: &mut UiState, scale: f32) {
+    let scale = if scale.is_finite() { scale } else { 1.0 };
+    state.scale = ((scale * 10.0).round() / 10.0).clamp(SCALES[0], SCALES[1]);
+    ctx.set_zoom_factor(state.scale);
+}
+
+/// Sides, tabs and sizes as at the first start.
+fn reset_layout(ctx: &Context, state: &mut UiState) {
+    let first = UiState::default();
+    (state.shows_left, state.shows_right) = (first.shows_left, first.shows_right);
+    (state.tab, state.right_tab, state.shows_log) = (first.tab, first.right_tab, first.shows_log);
+    state.solve.shows_results = first.solve.shows_results;
+    ctx.data_mut(|data| data.remove_by_type::<PanelState>());
+    set_scale(ctx, state, first.scale);
 }

@@ -83,7 +83,8 @@ impl App {
             None => self.carry_out(ctx, Action::Start(Box::default())),
         }
         self.edit("recover", Edit::Restore(Box::new(project)));
-        self.messages.say(Weight::Good, &format!("Recovered {}: save it to keep it", found.name()));
+        let what = if found.file.is_some() { found.name() } else { "the project".to_owned() };
+        self.messages.say(Weight::Good, &format!("Recovered {what}: save it to keep it"));
         self.recovery.adopt(found);
     }
 

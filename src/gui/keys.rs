@@ -1,8 +1,8 @@
 //! The keys of the commands.
 
-use super::command::{Command, Facts};
+use super::command::Command;
 use crate::render::{Operator, StandardView};
-use egui::{Context, Key, KeyboardShortcut, Modifiers, os::OperatingSystem};
+use egui::{Key, KeyboardShortcut, Modifiers, os::OperatingSystem};
 
 /// A key alone.
 pub(super) fn plain(key: Key) -> KeyboardShortcut {
@@ -64,36 +64,17 @@ impl Command {
             Self::ShowCage => vec![plain(Key::C)],
             Self::SeeThrough => vec![plain(Key::T)],
             Self::ShowHistory => vec![command(Key::H)],
+            Self::ShowLeft => vec![plain(Key::F8)],
+            Self::ShowRight => vec![plain(Key::F9)],
+            Self::ZoomIn => vec![command(Key::Plus), command(Key::Equals)],
+            Self::ZoomOut => vec![command(Key::Minus)],
+            Self::ZoomReset => vec![command(Key::Num0)],
+            Self::NextPanel => vec![plain(Key::F6)],
+            Self::PreviousPanel => vec![shift(Key::F6)],
             Self::Palette => vec![command_shift(Key::P)],
             Self::Keys => vec![plain(Key::F1)],
-            Self::ClearRecent | Self::Welcome | Self::Example(_) => Vec::new(),
+            Self::ResetLayout | Self::ClearRecent | Self::Welcome | Self::Example(_) => Vec::new(),
             Self::ResetAll | Self::CompensateNot | Self::SavePlot | Self::ShowLog | Self::Theme(_) => Vec::new(),
         }
-    }
-
-    /// The commands whose keys were pressed in this frame, if they can be used; keys are consumed.
-    ///
-    /// Keys that mean something to a text field belong to it while one is being edited.
-    pub(super) fn pressed(ctx: &Context, facts: &Facts) -> Vec<Self> {
-        let os = ctx.os();
-        let typing = ctx.text_edit_focused();
-        let mut keys: Vec<(KeyboardShortcut, Self)> =
-            Self::ALL.iter().flat_map(|&c| c.keys(os).into_iter().map(move |k| (k, c))).collect();
-        // A shortcut matches with extra modifiers too, so the ones with more modifiers go first.
-        keys.sort_by_key(|(k, _)| std::cmp::Reverse(usize::from(k.modifiers.any()) + usize::from(k.modifiers.shift)));
-        // Letters and digits, and the keys by which text is selected, undone and redone.
-        let is_text = |k: &KeyboardShortcut| {
-            let edits_text = matches!(k.logical_key, Key::A | Key::Z | Key::Y);
-            let is_letter = k.modifiers.is_none() || k.modifiers == Modifiers::SHIFT;
-            (is_letter && !matches!(k.logical_key, Key::F1 | Key::F5)) || edits_text
-        };
-        let mut found = Vec::new();
-        for (shortcut, command) in keys {
-            if !(typing && is_text(&shortcut)) && ctx.input_mut(|i| i.consume_shortcut(&shortcut)) {
-                found.push(command);
-            }
-        }
-        found.retain(|c| c.is_enabled(facts));
-        found
     }
 }

@@ -20,6 +20,7 @@
 mod app;
 mod bars;
 mod command;
+mod command_input;
 mod dialogs;
 mod disk;
 mod edit_commands;

@@ -21,7 +21,7 @@ fn choice(ui: &mut Ui, name: &str, about: &str, tip: &str) -> bool {
         below.append_to(&mut job, style, egui::FontSelection::Default, egui::Align::Center);
         job
     };
-    let button = Button::new(text(ui)).min_size(vec2(ui.available_width(), CHOICE_HEIGHT)).truncate();
+    let button = Button::new(text(ui)).min_size(vec2(ui.available_width(), CHOICE_HEIGHT));
     let response = ui.add(button);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name));
     response.on_hover_text(tip).clicked()

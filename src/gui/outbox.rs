@@ -47,8 +47,8 @@ pub(super) enum Action {
     Say(Weight, String),
     /// Opens a project file.
     OpenPath(PathBuf),
-    /// Saves to a project file.
-    SavePath(PathBuf),
+    /// Saves to a project file, and goes on.
+    SavePath(PathBuf, Option<Next>),
     /// Replaces the project by another one that has no file yet.
     Start(Box<Project>),
     /// Saves, and goes on with what was asked for.

@@ -23,7 +23,7 @@ const LETTER: usize = 1;
 const WORD_START: usize = 8;
 const FOLLOWS: usize = 8;
 /// Least worth per letter: below it, letters were found here and there by chance.
-const LEAST_PER_LETTER: usize = 2;
+const LEAST_PER_LETTER: usize = 4;
 /// What a word found in the description is worth: less than any in the name.
 const IN_TIP: usize = 1;
 

@@ -4,14 +4,14 @@ use super::outbox::{Action, Outbox};
 use super::theme::Tokens;
 use crate::project::History;
 use crate::project::history::{Entry, Place};
-use egui::{Button, RichText, Ui};
+use egui::{Align, Button, Layout, RichText, Ui};
 
 /// Indentation of a branch, points, and how many branches are told apart by it.
 const INDENT: f32 = 14.0;
 const MAX_INDENTS: usize = 6;
 
 /// Draws the panel.
-pub(super) fn ui(ui: &mut Ui, history: &History, out: &mut Outbox) {
+pub(super) fn ui(ui: &mut Ui, history: &History, has_file: bool, out: &mut Outbox) {
     let entries = history.entries();
     if entries.len() == 1 {
         ui.label(RichText::new("Nothing has been changed yet. Every change will be listed here.").weak());
@@ -21,11 +21,11 @@ pub(super) fn ui(ui: &mut Ui, history: &History, out: &mut Outbox) {
     ui.add_space(4.0);
     ui.spacing_mut().item_spacing.y = 1.0;
     for entry in entries {
-        row(ui, &entry, out);
+        row(ui, &entry, has_file, out);
     }
 }
 
-fn row(ui: &mut Ui, entry: &Entry<'_>, out: &mut Outbox) {
+fn row(ui: &mut Ui, entry: &Entry<'_>, has_file: bool, out: &mut Outbox) {
     let tokens = Tokens::here(ui);
     let is_here = entry.place == Place::Here;
     let color = match entry.place {
@@ -40,11 +40,13 @@ fn row(ui: &mut Ui, entry: &Entry<'_>, out: &mut Outbox) {
     };
     ui.horizontal(|ui| {
         ui.add_space(INDENT * entry.depth.min(MAX_INDENTS) as f32);
-        let saved = if entry.is_saved { " (saved)" } else { "" };
+        let saved = if entry.is_saved && has_file { " (saved)" } else { "" };
         let text = RichText::new(format!("{}{saved}", entry.name)).color(color);
-        let button = Button::selectable(is_here, text).min_size(egui::vec2(ui.available_width(), 20.0)).truncate();
-        if ui.add(button).on_hover_text(tip).clicked() && !is_here {
-            out.push(Action::GoTo(entry.number));
-        }
+        let button = Button::selectable(is_here, text).truncate();
+        ui.with_layout(Layout::top_down_justified(Align::LEFT), |ui| {
+            if ui.add(button).on_hover_text(tip).clicked() && !is_here {
+                out.push(Action::GoTo(entry.number));
+            }
+        });
     });
 }

@@ -235,6 +235,8 @@ impl Session {
         self.guarded = false;
         self.refused = None;
         self.shown = None;
+        // Even if it is the project sent last: nothing is on show now.
+        self.sent = None;
     }
 
     /// Notes that the project was saved to `path`.

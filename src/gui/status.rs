@@ -1,11 +1,14 @@
 //! The status line, and the messages since the program began.
 
 use super::command::Command;
+use super::mesh_session::MeshSession;
 use super::outbox::{Action, Outbox};
 use super::session::Session;
+use super::solve_session::SolveSession;
 use super::theme::Tokens;
 use super::ui_state::UiState;
-use egui::{ProgressBar, RichText, ScrollArea, Spinner, Ui};
+use crate::task::Progress;
+use egui::{ProgressBar, RichText, ScrollArea, Ui};
 use egui_notify::{Anchor, Toasts};
 use std::time::Duration;
 
@@ -74,6 +77,15 @@ impl Messages {
     /// Draws the list.
     pub(super) fn log(&self, ui: &mut Ui) {
         let tokens = Tokens::here(ui);
+        ui.horizontal(|ui| {
+            ui.strong("Messages");
+            let tip = "Copy all messages, for a report";
+            let button = ui.add_enabled(!self.list.is_empty(), egui::Button::new("Copy all").small());
+            if button.on_hover_text(tip).clicked() {
+                let lines: Vec<String> = self.list.iter().map(|(weight, text)| line(*weight, text)).collect();
+                ui.ctx().copy_text(lines.join("\n"));
+            }
+        });
         if self.list.is_empty() {
             ui.label(RichText::new("No messages so far.").weak());
             return;
@@ -85,9 +97,18 @@ impl Messages {
                     Weight::Warning => tokens.warning,
                     Weight::Error => tokens.error,
                 };
-                ui.label(RichText::new(text).color(color));
+                ui.label(RichText::new(line(*weight, text)).color(color));
             }
         });
+    }
+}
+
+/// A message with its weight in words: a colour alone does not reach everybody.
+fn line(weight: Weight, text: &str) -> String {
+    match weight {
+        Weight::Good => text.to_owned(),
+        Weight::Warning => format!("Warning: {text}"),
+        Weight::Error => format!("Error: {text}"),
     }
 }
 
@@ -108,25 +129,26 @@ fn break_lines(text: &str, columns: usize) -> String {
     lines.join("\n")
 }
 
+/// Those whose doings the status line tells.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Workers<'a> {
+    pub(super) session: &'a Session,
+    pub(super) mesh: &'a MeshSession,
+    pub(super) solve: &'a SolveSession,
+}
+
 /// Draws the status line.
-pub(super) fn ui(ui: &mut Ui, session: &Session, messages: &Messages, state: &mut UiState, out: &mut Outbox) {
-    let tokens = Tokens::here(ui);
+pub(super) fn ui(ui: &mut Ui, workers: Workers<'_>, messages: &Messages, state: &mut UiState, out: &mut Outbox) {
+    let session = workers.session;
     ui.horizontal(|ui| {
-        let play = session.play();
-        if session.is_busy() && !session.in_gesture() && !play.is_on() {
-            busy(ui, session, out);
-        } else if let Some(message) = session.refusal() {
-            let text = RichText::new(format!("⚠ {message}")).color(tokens.error);
-            ui.add(egui::Label::new(text).truncate()).on_hover_text(message);
-        } else if play.is_on() {
-            let text = format!("{:.0} % of the deformation, for looking only", 100.0 * play.amount);
-            ui.label(RichText::new(text).color(tokens.warning));
-        } else if session.in_gesture() {
-            ui.label(RichText::new("Preview: computed in full when you let go").color(tokens.weak));
-        } else if session.finished().is_some() {
-            ui.label(RichText::new("Ready").color(tokens.good));
-        } else {
-            ui.label(RichText::new("Stopped: change something to compute again").color(tokens.warning));
+        deformation(ui, session, out);
+        if workers.mesh.is_busy() {
+            ui.separator();
+            busy(ui, "Meshing", workers.mesh.progress(), Action::CancelMesh, out);
+        }
+        if workers.solve.is_busy() {
+            ui.separator();
+            busy(ui, "Solving", workers.solve.progress(), Action::CancelSolve, out);
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let count = messages.list.len();
@@ -147,25 +169,43 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, messages: &Messages, state: &mu
     });
 }
 
-fn busy(ui: &mut Ui, session: &Session, out: &mut Outbox) {
-    match session.progress() {
-        Some(p) if p.total > 0 => {
-            let part = p.done as f32 / p.total as f32;
-            let bar = ProgressBar::new(part).desired_width(140.0).desired_height(12.0);
-            ui.add(bar);
-            ui.label(p.phase);
-        }
-        Some(p) => {
-            ui.add(Spinner::new().size(14.0));
-            ui.label(p.phase);
-        }
-        None => {
-            ui.add(Spinner::new().size(14.0));
-            ui.label("Computing");
-        }
+/// What the thread that deforms the antenna does.
+fn deformation(ui: &mut Ui, session: &Session, out: &mut Outbox) {
+    let tokens = Tokens::here(ui);
+    let play = session.play();
+    if session.is_busy() && !session.in_gesture() && !play.is_on() {
+        busy(ui, "Deforming", session.progress(), Action::StopWork, out);
+    } else if let Some(message) = session.refusal() {
+        let text = RichText::new(format!("⚠ {message}")).color(tokens.error);
+        ui.add(egui::Label::new(text).truncate()).on_hover_text(message);
+    } else if play.is_on() {
+        let text = format!("{:.0} % of the deformation, for looking only", 100.0 * play.amount);
+        ui.label(RichText::new(text).color(tokens.warning));
+    } else if session.in_gesture() {
+        ui.label(RichText::new("Preview: computed in full at the end").color(tokens.weak));
+    } else if session.finished().is_some() {
+        ui.label(RichText::new("Ready").color(tokens.good));
+    } else {
+        ui.label(RichText::new("Stopped: change something to compute again").color(tokens.warning));
     }
-    if ui.small_button("Stop").on_hover_text("Stop computing; what is shown stays").clicked() {
-        out.push(Action::StopWork);
+}
+
+/// What a worker does, how far it is, and a button that stops it; nothing that moves by itself and so costs frames.
+fn busy(ui: &mut Ui, name: &str, progress: Option<Progress>, stop: Action, out: &mut Outbox) {
+    if let Some(p) = progress.filter(|p| p.total > 0) {
+        let bar = ProgressBar::new(p.done as f32 / p.total as f32).desired_width(110.0).desired_height(12.0);
+        let response = ui.add(bar);
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ProgressIndicator, true, name));
+    }
+    match progress {
+        Some(p) => ui.label(format!("{name}: {}…", p.phase)),
+        None => ui.label(format!("{name}…")),
+    };
+    let response = ui.small_button("Stop");
+    response
+        .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Stop {}", name.to_lowercase())));
+    if response.on_hover_text("Stop this; what is shown stays").clicked() {
+        out.push(stop);
     }
 }
 

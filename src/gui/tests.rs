@@ -279,7 +279,7 @@ fn saving_and_opening_bring_back_the_same_project() {
     let app = window.state_mut();
     app.edit("hand edits", Edit::MoveVertices(vec![(3, [0.1, 0.2, 0.3])]));
     assert!(app.session.history().is_dirty(), "unsaved");
-    app.carry_out(&ctx, Action::SavePath(path.clone()));
+    app.carry_out(&ctx, Action::SavePath(path.clone(), None));
     assert!(!app.session.history().is_dirty(), "saved");
     let saved = app.session.project().clone();
     assert_eq!(file::read(&path).expect("readable"), saved, "the file holds the project");

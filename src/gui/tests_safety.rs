@@ -121,7 +121,7 @@ fn discarded_work_is_gone_and_a_saved_window_leaves_nothing() {
     lift(&mut second, 0.2);
     second.state_mut().recovery.pace = Pace { rest: Duration::ZERO, longest: Duration::ZERO };
     second.run_steps(2);
-    carry_out(&mut second, Action::SavePath(dir.path().join("a.json")));
+    carry_out(&mut second, Action::SavePath(dir.path().join("a.json"), None));
     let left = std::fs::read_dir(dir.path().join("kept")).expect("readable").count();
     assert_eq!(left, 0, "saved work is not kept twice");
 }
@@ -130,7 +130,7 @@ fn discarded_work_is_gone_and_a_saved_window_leaves_nothing() {
 fn saved(path: &Path) -> Window {
     let mut window = window();
     lift(&mut window, 0.1);
-    carry_out(&mut window, Action::SavePath(path.to_owned()));
+    carry_out(&mut window, Action::SavePath(path.to_owned(), None));
     assert!(path.is_file(), "saved");
     window
 }
@@ -185,7 +185,7 @@ fn files_are_remembered_newest_first_and_opened_again() {
     let dir = tempfile::tempdir().expect("a folder");
     let [first, second] = ["a.json", "b.json"].map(|name| dir.path().join(name));
     let mut window = saved(&first);
-    carry_out(&mut window, Action::SavePath(second.clone()));
+    carry_out(&mut window, Action::SavePath(second.clone(), None));
     carry_out(&mut window, Action::OpenPath(first.clone()));
     assert_eq!(window.state().state.recent_files, [first.clone(), second.clone()], "each once");
     lift(&mut window, 0.5);
@@ -203,4 +203,21 @@ fn files_are_remembered_newest_first_and_opened_again() {
     assert!(egui_kittest::kittest::NodeT::accesskit_node(&item).is_disabled(), "a file that is gone is greyed");
     carry_out(&mut window, Action::Run(Command::ClearRecent));
     assert!(window.state().state.recent_files.is_empty(), "forgotten");
+}
+
+#[test]
+fn saving_before_quitting_asks_for_the_file_and_then_quits() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let mut window = window();
+    window.state_mut().state.last_folder = Some(dir.path().to_owned());
+    lift(&mut window, 0.1);
+    carry_out(&mut window, Action::Run(Command::Quit));
+    window.get_by_label("Unsaved changes");
+    window.get_all_by_label("Save").last().expect("the button of the dialog").click();
+    lay_out(&mut window);
+    window.get_by_label("Save project");
+    window.get_all_by_label("Save").last().expect("the button of the dialog").click();
+    lay_out(&mut window);
+    assert!(dir.path().join("antenna.json").is_file(), "saved as suggested");
+    assert!(window.state().may_close, "and quits");
 }

@@ -1,9 +1,15 @@
-//! Tests of the window's frame: commands by key and palette.
+//! Tests of the window's frame: commands by key and palette, names for screen readers, sides and sizes.
 
 use super::command::{Command, Facts};
+use super::dialogs::Dialog;
+use super::outbox::Action;
 use super::tests::{Window, lay_out, settle, window};
+use super::ui_state::{RightTab, Tab};
+use crate::project::Example;
+use egui::accesskit::{self, Role};
 use egui::{Event, Key, Modifiers, RawInput};
-use egui_kittest::kittest::Queryable;
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
 
 /// Facts under which every command can be used.
 fn everything() -> Facts {
@@ -66,4 +72,161 @@ fn the_palette_runs_what_is_chosen_with_the_keys() {
     lay_out(&mut window);
     assert!(window.query_by_label("Find a command").is_none(), "called off");
     assert!(!window.state().state.selection.is_empty(), "and nothing else happened");
+}
+
+/// The controls on show that have no name for a screen reader.
+fn unnamed<S>(window: &Harness<'_, S>) -> Vec<String> {
+    let nodes = window.root().children_recursive().map(|node| node.accesskit_node());
+    let nameless = nodes.filter(|node| {
+        // Edges of panels are told by their role and their value; egui gives them no name.
+        let is_control = node.data().supports_action(accesskit::Action::Focus) && node.role() != Role::Splitter;
+        is_control && node.label().is_none_or(|label| label.trim().is_empty())
+    });
+    nameless.map(|node| format!("{:?} {:?} {:?}", node.role(), node.value(), node.bounding_box())).collect()
+}
+
+#[test]
+fn a_control_without_a_name_is_noticed() {
+    let plain = Harness::builder().with_accessibility_check(false).build_ui(|ui| {
+        ui.add(egui::Button::new(""));
+        ui.add(egui::Button::new("Named"));
+    });
+    assert_eq!(unnamed(&plain).len(), 1, "{:?}", unnamed(&plain));
+}
+
+#[test]
+fn every_control_has_a_name_for_screen_readers() {
+    let mut window = window();
+    let ctx = window.ctx.clone();
+    let mut faults = Vec::new();
+    let mut look = |window: &mut Window, at: &str| {
+        lay_out(window);
+        faults.extend(unnamed(window).into_iter().map(|fault| format!("{at}: {fault}")));
+    };
+    look(&mut window, "first window");
+    for (_, _, preset) in super::preset_fields::choices() {
+        window.state_mut().carry_out(&ctx, Action::AddPreset(preset));
+    }
+    window.state_mut().state.selection = [1, 2].into();
+    look(&mut window, "all presets");
+    for tab in [Tab::Antenna, Tab::History] {
+        window.state_mut().state.tab = tab;
+        look(&mut window, "left tabs");
+    }
+    window.state_mut().carry_out(&ctx, Action::Run(Command::Compensate));
+    for tab in [RightTab::Figures, RightTab::Mesh, RightTab::Solve] {
+        window.state_mut().state.right_tab = tab;
+        look(&mut window, "right tabs");
+    }
+    for command in [Command::ShowResults, Command::ShowLog] {
+        window.state_mut().carry_out(&ctx, Action::Run(command));
+        look(&mut window, "below the view");
+    }
+    for command in [Command::Palette, Command::Keys, Command::Welcome, Command::SaveAs, Command::Open, Command::Export]
+    {
+        window.state_mut().dialog = Dialog::None;
+        window.state_mut().session.apply(crate::project::Edit::ClearHandEdits).expect("always possible");
+        window.state_mut().carry_out(&ctx, Action::Run(command));
+        look(&mut window, "dialogs");
+    }
+    window.state_mut().dialog = Dialog::Changed;
+    look(&mut window, "file changed");
+    window.state_mut().dialog = Dialog::Overwrite("a.json".into(), None);
+    look(&mut window, "file to replace");
+    window.state_mut().dialog = Dialog::None;
+    lay_out(&mut window);
+    for (title, _) in super::bars::MENUS {
+        window.get_all_by_role_and_label(Role::Button, title).next().expect("the menu").click();
+        look(&mut window, title);
+        window.key_press(Key::Escape);
+        lay_out(&mut window);
+    }
+    assert!(faults.is_empty(), "{} without a name:\n{}", faults.len(), faults.join("\n"));
+}
+
+#[test]
+fn f6_goes_from_panel_to_panel_and_back() {
+    let mut window = window();
+    let focused = |window: &Window| {
+        let id = window.ctx.memory(|m| m.focused()).expect("something has the keys");
+        window.ctx.viewport(|v| v.prev_pass.widgets.get(id).map(|w| w.rect)).expect("it is on show")
+    };
+    let mut places = Vec::new();
+    for _ in 0..6 {
+        window.key_press(Key::F6);
+        lay_out(&mut window);
+        places.push(focused(&window));
+    }
+    for (k, place) in places.iter().enumerate() {
+        assert!(!places[..k].contains(place), "panel {k} is another one: {places:?}");
+    }
+    window.key_press_modifiers(Modifiers::SHIFT, Key::F6);
+    lay_out(&mut window);
+    assert_eq!(focused(&window), places[4], "and back");
+    window.key_press(Key::Tab);
+    lay_out(&mut window);
+    assert_ne!(focused(&window), places[4], "Tab goes on within");
+}
+
+#[test]
+fn sides_are_hidden_and_the_layout_is_reset() {
+    let mut window = window();
+    let width = |window: &Window| window.get_by_label("3-D view").rect().width();
+    let before = width(&window);
+    for key in [Key::F8, Key::F9] {
+        window.key_press(key);
+    }
+    window.run_steps(60);
+    assert!(width(&window) > before + 400.0, "the view takes the room: {}", width(&window));
+    window.state_mut().state.shows_log = true;
+    let ctx = window.ctx.clone();
+    window.state_mut().carry_out(&ctx, Action::Run(Command::ZoomIn));
+    window.run_steps(2);
+    window.state_mut().carry_out(&ctx, Action::Run(Command::ResetLayout));
+    window.run_steps(60);
+    assert!((width(&window) - before).abs() < 1.0, "as at the start: {} and {before}", width(&window));
+}
+
+#[test]
+fn the_interface_grows_and_shrinks_by_key_and_within_limits() {
+    let mut window = window();
+    let scale = |window: &Window| (window.ctx.zoom_factor() * 10.0).round() as i32;
+    window.key_press_modifiers(Modifiers::COMMAND, Key::Plus);
+    window.run_steps(2);
+    assert_eq!(scale(&window), 11, "larger");
+    window.key_press_modifiers(Modifiers::COMMAND, Key::Num0);
+    window.run_steps(2);
+    assert_eq!(scale(&window), 10, "normal");
+    for _ in 0..9 {
+        window.key_press_modifiers(Modifiers::COMMAND, Key::Minus);
+        window.run_steps(2);
+    }
+    assert_eq!(scale(&window), 7, "not too small to be undone");
+    assert!((window.state().state.scale - 0.7).abs() < 1e-6, "remembered");
+}
+
+#[test]
+fn the_status_line_tells_what_all_workers_do() {
+    let mut window = window();
+    window.state_mut().state.mesh.density = crate::pipeline::Density::Coarse;
+    let ctx = window.ctx.clone();
+    window.state_mut().carry_out(&ctx, Action::Run(Command::Mesh));
+    window.step();
+    let busy = window.state().mesh.is_busy();
+    let told = window.query_all_by_label_contains("Meshing").count();
+    assert!(!busy || told > 0, "meshing is told");
+    window.state_mut().mesh.cancel();
+}
+
+#[test]
+fn examples_are_computed_and_need_no_file() {
+    for example in Example::ALL {
+        let mut window = window();
+        let ctx = window.ctx.clone();
+        window.state_mut().carry_out(&ctx, Action::Run(Command::Example(example)));
+        settle(&mut window);
+        let session = &window.state().session;
+        assert!(session.finished().is_some(), "{example:?}: {:?}", session.refusal());
+        assert!(session.path.is_none() && !session.history().is_dirty(), "{example:?} is new");
+    }
 }

@@ -287,7 +287,7 @@ fn results_are_kept_beside_the_project_and_shown_when_it_is_opened_again() {
         window.state_mut().carry_out(&ctx, action);
         window.run_steps(2);
     };
-    carry_out(&mut window, Action::SavePath(path.clone()));
+    carry_out(&mut window, Action::SavePath(path.clone(), None));
     run(&mut window, Command::New);
     assert!(window.state().solve.runs().is_empty(), "another project");
     carry_out(&mut window, Action::OpenPath(path.clone()));

@@ -244,6 +244,10 @@ pub(super) struct UiState {
     pub(super) heat: Heat,
     /// Half range of the colour bar in percent, where the user fixed it.
     pub(super) heat_range: Option<f32>,
+    /// Size of the interface, as a factor.
+    pub(super) scale: f32,
+    pub(super) shows_left: bool,
+    pub(super) shows_right: bool,
     pub(super) shows_cage: bool,
     pub(super) sees_through: bool,
     pub(super) shows_log: bool,
@@ -291,6 +295,9 @@ impl Default for UiState {
             theme: ThemePreference::System,
             heat: Heat::None,
             heat_range: None,
+            scale: 1.0,
+            shows_left: true,
+            shows_right: true,
             shows_cage: true,
             sees_through: false,
             shows_log: false,
