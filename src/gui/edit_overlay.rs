@@ -44,8 +44,7 @@ pub(super) fn operator(ui: &Ui, rect: Rect, view: &View, operating: &Operating, 
     let end = if operating.is_held { "let go" } else { "Enter or click" };
     let absolute = if operating.may_be_absolute() { "   = target" } else { "" };
     let keys = format!(
-        "X, Y, Z axis (Shift: plane)   digits: exact, Tab next{absolute}   Ctrl steps   Shift fine   O near vertices   \
-         {end}: apply   Esc: give up"
+        "X, Y, Z axis (Shift: plane)   digits: exact{absolute}   Ctrl steps   O near ones   {end}: apply   Esc: give up"
     );
     hint(ui, rect, &format!("{what}\n{keys}"));
     let told = ui.interact(rect, Id::unique("operator text"), Sense::hover());

@@ -47,6 +47,7 @@ mod panel_cage;
 mod panel_compensation;
 mod panel_distortion;
 mod panel_history;
+mod panel_materials;
 mod panel_mesh;
 mod panel_results;
 mod panel_solve;
@@ -74,6 +75,8 @@ mod status;
 mod tests;
 #[cfg(test)]
 mod tests_edit;
+#[cfg(test)]
+mod tests_materials;
 #[cfg(test)]
 mod tests_mesh;
 #[cfg(test)]

@@ -4,6 +4,7 @@ use super::command::Command;
 use super::dialogs::Next;
 use super::outbox::{Action, Outbox};
 use super::recovery::Found;
+use super::theme::Tokens;
 use crate::project::Example;
 use egui::{Button, RichText, Ui, vec2};
 use std::path::{Path, PathBuf};
@@ -87,6 +88,10 @@ pub(super) fn recovery(ui: &mut Ui, found: &[Found], out: &mut Outbox) -> bool {
                     ui.add(egui::Label::new(RichText::new(file.display().to_string()).weak()).truncate());
                 }
                 ui.label(format!("Kept {}", found.age()));
+                if found.is_outdated() {
+                    let text = "The file was saved after that and may hold newer work: compare before you save.";
+                    ui.colored_label(Tokens::here(ui).warning, text);
+                }
                 ui.horizontal(|ui| {
                     let tip = "Open it with its unsaved changes; the file stays as it is until you save";
                     if ui.button("Recover").on_hover_text(tip).clicked() {

@@ -214,10 +214,11 @@ pub(super) fn vertex_hint(ui: &Ui, rect: Rect, vertex: u32, pose: &Pose) {
     }
 }
 
-/// One line at the bottom of the view, above the scale bar.
+/// A few words at the bottom of the view, above the scale bar.
 pub(super) fn hint(ui: &Ui, rect: Rect, text: &str) {
     let tokens = Tokens::here(ui);
-    let galley = ui.painter().layout_no_wrap(text.to_owned(), font(), tokens.text);
+    let width = (rect.width() - 2.0 * MARGIN - 16.0).max(60.0);
+    let galley = ui.painter().layout(text.to_owned(), font(), tokens.text, width);
     let at = pos2(rect.center().x - galley.size().x / 2.0, rect.bottom() - HINT_HEIGHT - galley.size().y);
     let back = Rect::from_min_size(at, galley.size()).expand2(vec2(8.0, 4.0));
     ui.painter().rect_filled(back, 4.0, tokens.panel);

@@ -4,7 +4,7 @@ use super::outbox::{Action, Outbox};
 use super::theme::Tokens;
 use crate::project::History;
 use crate::project::history::{Entry, Place};
-use egui::{Align, Button, Layout, RichText, Ui};
+use egui::{Align, Button, Id, Layout, RichText, Ui};
 
 /// Indentation of a branch, points, and how many branches are told apart by it.
 const INDENT: f32 = 14.0;
@@ -44,8 +44,14 @@ fn row(ui: &mut Ui, entry: &Entry<'_>, has_file: bool, out: &mut Outbox) {
         let text = RichText::new(format!("{}{saved}", entry.name)).color(color);
         let button = Button::selectable(is_here, text).truncate();
         ui.with_layout(Layout::top_down_justified(Align::LEFT), |ui| {
-            if ui.add(button).on_hover_text(tip).clicked() && !is_here {
+            let response = ui.add(button).on_hover_text(tip);
+            if response.clicked() && !is_here {
                 out.push(Action::GoTo(entry.number));
+            }
+            let seen = Id::unique("step in sight");
+            if is_here && ui.data(|d| d.get_temp(seen)) != Some(entry.number) {
+                ui.data_mut(|d| d.insert_temp(seen, entry.number));
+                response.scroll_to_me(None);
             }
         });
     });

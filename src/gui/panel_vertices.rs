@@ -47,6 +47,10 @@ pub(super) fn ui(ui: &mut Ui, project: &Project, pose: Option<&Pose>, state: &mu
     });
     let table = Table { project, pose, mirror: state.editing.mirror(), columns: state.editing.columns };
     let vertices: Vec<u32> = state.selection.iter().copied().collect();
+    if state.play.is_on() {
+        // The numbers are those of the part that is shown: no place to set anything to.
+        ui.disable();
+    }
     ui.spacing_mut().item_spacing = vec2(6.0, 3.0);
     ui.horizontal(|ui| {
         let tokens = Tokens::here(ui);

@@ -97,6 +97,12 @@ impl Found {
         name.map_or_else(|| "A project that was never saved".to_owned(), |n| n.to_string_lossy().into_owned())
     }
 
+    /// Whether its file was saved after it was written, and so may hold newer work.
+    pub(super) fn is_outdated(&self) -> bool {
+        let saved = self.file.as_ref().and_then(|file| fs::metadata(file).and_then(|m| m.modified()).ok());
+        saved.is_some_and(|saved| saved > self.written)
+    }
+
     /// How long ago it was written.
     pub(super) fn age(&self) -> String {
         ago(self.written.elapsed().unwrap_or_default())
@@ -330,12 +336,13 @@ mod tests {
     #[test]
     fn what_a_window_left_is_offered_to_one_other_and_only_after_its_end() {
         let dir = tempfile::tempdir().expect("a folder");
+        let elsewhere = tempfile::tempdir().expect("another folder");
         let root = || Some(dir.path().to_owned());
         let mut window = Recovery::new(root());
         window.pace = Pace { rest: Duration::ZERO, longest: Duration::ZERO };
         let project = lifted(1.0);
-        let file = Path::new("/somewhere/bent.json");
-        window.tick(Moment { file: Some(file), ..moment(Instant::now(), &project) });
+        let file = elsewhere.path().join("bent.json");
+        window.tick(Moment { file: Some(&file), ..moment(Instant::now(), &project) });
         flush(&mut window);
         assert!(Recovery::new(root()).found.is_empty(), "the window still lives");
         window.close(true);
@@ -346,6 +353,14 @@ mod tests {
         let found = heir.found.remove(0);
         assert_eq!((found.name(), found.age()), ("bent.json".to_owned(), "less than a minute ago".to_owned()));
         assert_eq!(found.project().expect("readable"), project, "the work");
+        assert!(!found.is_outdated(), "its file was not even saved");
+        fs::write(&file, "newer").expect("writable");
+        File::options()
+            .write(true)
+            .open(&file)
+            .and_then(|f| f.set_modified(found.written + Duration::from_secs(1)))
+            .expect("dated");
+        assert!(found.is_outdated(), "its file was saved later");
         heir.adopt(found);
         assert!(Recovery::new(root()).found.is_empty(), "kept by the heir from now on");
         heir.close(false);

@@ -10,10 +10,11 @@ use super::edit_ui::Outline;
 use super::mesh_scene::MeshScene;
 use super::mesh_session::ShownMesh;
 use super::operating::{Operating, Outcome};
-use super::outbox::Outbox;
+use super::outbox::{Action, Outbox};
 use super::overlay;
 use super::paint::ScenePaint;
 use super::pattern_scene::{self, PatternScene};
+use super::play::Play;
 use super::scene::{Hot, SceneBuilder, gizmo, to_picture};
 use super::selecting::Drawn;
 use super::session::{Pose, Session};
@@ -97,6 +98,11 @@ impl Frame<'_> {
         state: &UiState,
         out: &mut Outbox,
     ) -> Option<Operating> {
+        if state.play.is_on() {
+            // Vertices are moved from where they really are.
+            out.push(Action::Show(Play::default()));
+            return None;
+        }
         let pose = self.pose.filter(|_| state.shows_cage)?;
         let mirror = lead.map_or(state.editing.mirror(), |v| state.editing.mirror().led_by(&pose.cage, v));
         Operating::begin(operator, (pose, self.session.project()), &state.selection, mirror, at, out)
@@ -252,6 +258,8 @@ impl Viewport {
     /// Begins the operator that a command asked for; the pointer then drives it without a button.
     fn start_wanted(&mut self, ui: &Ui, response: &Response, frame: &Frame<'_>, state: &UiState, out: &mut Outbox) {
         let Some(operator) = self.wanted.take().filter(|_| !self.is_dragging()) else { return };
+        // It begins with the next frame, when the whole deformation is shown again.
+        self.wanted = Some(operator).filter(|_| state.play.is_on());
         let at = ui.input(|i| i.pointer.latest_pos()).map_or(frame.local(frame.rect.center()), |p| frame.local(p));
         if let Some(operating) = frame.operate(operator, None, at, state, out) {
             self.drag = Drag::Operate(Box::new(operating));
