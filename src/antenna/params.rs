@@ -1,5 +1,6 @@
 //! Parameters of the coax-fed patch antenna and their validation.
 
+use super::loads::{Conductor, MAX_RESISTORS, Resistor};
 use crate::geometry::{DVec2, DVec3};
 use crate::units::to_mm;
 
@@ -47,6 +48,12 @@ pub struct PatchParams {
     pub substrate: Dielectric,
     /// Sheath of the coaxial line.
     pub sheath: Dielectric,
+    /// What the patch's metal is.
+    pub patch_metal: Conductor,
+    /// What the ground's metal is.
+    pub ground_metal: Conductor,
+    /// Resistors between ground and patch.
+    pub resistors: Vec<Resistor>,
 }
 
 /// What is wrong with a parameter, by the name that the project file and the window use for it.
@@ -84,6 +91,44 @@ pub enum ParamError {
         /// "less than" or "more than".
         bound: &'static str,
         /// The limit, mm.
+        limit_mm: f64,
+    },
+    /// There are too many resistors.
+    #[error("resistors has {count} resistors, but at most {MAX_RESISTORS} can be placed: remove some")]
+    TooManyResistors {
+        /// How many there are.
+        count: usize,
+    },
+    /// A resistor's value lies outside its range.
+    #[error("resistors[{index}] (resistor {}) has {value} ohm, but must have between {lo} and {hi}", index + 1)]
+    Resistance {
+        /// Place in the list.
+        index: usize,
+        /// Its value, ohm.
+        value: f64,
+        /// Smallest allowed.
+        lo: f64,
+        /// Greatest allowed.
+        hi: f64,
+    },
+    /// A resistor stands where it cannot.
+    #[error(
+        "resistors[{index}] (resistor {}) at ({x_mm:.4}, {y_mm:.4}) mm is {distance_mm:.4} mm {what}, but must be at \
+         least {limit_mm:.4} mm: move it",
+        index + 1
+    )]
+    Misplaced {
+        /// Place in the list.
+        index: usize,
+        /// x, mm.
+        x_mm: f64,
+        /// y, mm.
+        y_mm: f64,
+        /// What it is too near to.
+        what: String,
+        /// Its distance from that, mm.
+        distance_mm: f64,
+        /// Least distance, mm.
         limit_mm: f64,
     },
 }
@@ -132,7 +177,8 @@ impl PatchParams {
     pub fn validate(&self) -> Result<(), ParamError> {
         self.check_lengths()?;
         self.check_ranges()?;
-        self.check_fit()
+        self.check_fit()?;
+        self.check_loads()
     }
 
     fn check_lengths(&self) -> Result<(), ParamError> {
@@ -226,6 +272,9 @@ pub(crate) mod tests {
             coax_segments: 28,
             substrate: Dielectric { eps_r: 2.2, tan_delta: 0.0009 },
             sheath: Dielectric { eps_r: 2.2, tan_delta: 0.0009 },
+            patch_metal: Conductor::Perfect,
+            ground_metal: Conductor::Perfect,
+            resistors: Vec::new(),
         }
     }
 

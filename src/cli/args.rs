@@ -48,7 +48,7 @@ pub enum Command {
 
 /// Arguments of `new`.
 #[derive(Debug, Args)]
-#[command(allow_negative_numbers = true)]
+#[command(allow_negative_numbers = true, after_help = super::new::materials())]
 pub struct NewArgs {
     /// Project file to write
     pub(super) file: PathBuf,
@@ -88,12 +88,24 @@ pub struct NewArgs {
     /// Substrate height, mm
     #[arg(long, value_name = "MM")]
     pub(super) height: Option<f64>,
+    /// Substrate by name, listed below; --eps-r and --tan-delta change its values
+    #[arg(long, value_name = "NAME")]
+    pub(super) substrate: Option<String>,
     /// Relative permittivity of the substrate
     #[arg(long, value_name = "NUMBER")]
     pub(super) eps_r: Option<f64>,
     /// Loss tangent of the substrate
     #[arg(long, value_name = "NUMBER")]
     pub(super) tan_delta: Option<f64>,
+    /// What the patch is made of: perfect, a name listed below, or ohm per square
+    #[arg(long, value_name = "METAL")]
+    pub(super) patch_metal: Option<String>,
+    /// What the ground is made of
+    #[arg(long, value_name = "METAL")]
+    pub(super) ground_metal: Option<String>,
+    /// A resistor from ground to patch at a place from the patch's center, mm, and its ohm; may be given several times
+    #[arg(long, value_name = "X,Y,OHM", value_delimiter = ',', num_args = 1, action = clap::ArgAction::Append)]
+    pub(super) resistor: Vec<f64>,
     /// Replace the file if it exists
     #[arg(long)]
     pub(super) force: bool,

@@ -41,6 +41,7 @@ const CANCELLED: u8 = 130;
 
 /// What was asked for on the command line.
 #[derive(Debug)]
+#[allow(clippy::large_enum_variant, reason = "made once")]
 pub enum Choice {
     /// The window, with a project if one was named.
     Window(Option<PathBuf>),

@@ -3,7 +3,10 @@
 use super::args::{NewArgs, Section};
 use crate::antenna::{Dielectric, first_guess};
 use crate::pipeline::Scene;
-use crate::project::{BendPlane, Edit, PresetEntry, PresetSpec, Project, file};
+use crate::project::materials::{DIELECTRICS, METALS, dielectric_named, metal_named};
+use crate::project::{
+    AntennaSpec, BendPlane, Edit, MaterialSpec, MetalSpec, PresetEntry, PresetSpec, Project, ResistorSpec, file,
+};
 use crate::units::{GHZ, from_mm, to_mm};
 use anyhow::{Context, Result, bail, ensure};
 
@@ -59,11 +62,55 @@ fn along_the_bend(args: &NewArgs, n: usize) -> [usize; 2] {
     }
 }
 
+/// The materials that can be named, for the help.
+pub(super) fn materials() -> String {
+    let substrates = DIELECTRICS.map(|d| format!("  {:<28}{:<8}{}", d.name, d.eps_r, d.tan_delta));
+    let metals = METALS.map(|m| format!("  {:<28}{}", m.name, m.ohm_per_square));
+    format!(
+        "Substrates, with permittivity and loss tangent:\n{}\n\nMetals, with ohm per square of the whole sheet:\n{}",
+        substrates.join("\n"),
+        metals.join("\n")
+    )
+}
+
+/// What a sheet is made of, as typed: perfect, a name, or ohm per square.
+fn metal(typed: &str) -> Result<MetalSpec> {
+    if typed.eq_ignore_ascii_case("perfect") {
+        return Ok(MetalSpec::Perfect);
+    }
+    if let Ok(ohm_per_square) = typed.parse() {
+        return Ok(MetalSpec::Sheet { name: String::new(), ohm_per_square });
+    }
+    metal_named(typed).with_context(|| format!("\"{typed}\" names no metal, or several: see conformant new --help"))
+}
+
+fn set_materials(antenna: &mut AntennaSpec, args: &NewArgs) -> Result<()> {
+    if let Some(name) = &args.substrate {
+        antenna.substrate = dielectric_named(name)
+            .with_context(|| format!("\"{name}\" names no substrate, or several: see conformant new --help"))?;
+    }
+    if args.eps_r.is_some() || args.tan_delta.is_some() {
+        let MaterialSpec { eps_r, tan_delta, .. } = antenna.substrate;
+        let (eps_r, tan_delta) = (args.eps_r.unwrap_or(eps_r), args.tan_delta.unwrap_or(tan_delta));
+        antenna.substrate = MaterialSpec { name: String::new(), eps_r, tan_delta }.recognized();
+    }
+    for (typed, metal_of) in
+        [(&args.patch_metal, &mut antenna.patch_metal), (&args.ground_metal, &mut antenna.ground_metal)]
+    {
+        if let Some(typed) = typed {
+            *metal_of = metal(typed)?;
+        }
+    }
+    let (resistors, rest) = args.resistor.as_chunks();
+    ensure!(rest.is_empty(), "--resistor takes three numbers, x,y,ohm");
+    antenna.resistors = resistors.iter().map(|&[x_mm, y_mm, ohm]| ResistorSpec { x_mm, y_mm, ohm }).collect();
+    Ok(())
+}
+
 fn set_antenna(project: &mut Project, args: &NewArgs) -> Result<()> {
     let mut antenna = project.antenna.clone();
     antenna.height_mm = args.height.unwrap_or(antenna.height_mm);
-    antenna.substrate.eps_r = args.eps_r.unwrap_or(antenna.substrate.eps_r);
-    antenna.substrate.tan_delta = args.tan_delta.unwrap_or(antenna.substrate.tan_delta);
+    set_materials(&mut antenna, args)?;
     if let Some(freq_ghz) = args.freq {
         let substrate = Dielectric { eps_r: antenna.substrate.eps_r, tan_delta: antenna.substrate.tan_delta };
         let guess = first_guess(freq_ghz * GHZ, substrate, from_mm(antenna.height_mm), RESISTANCE)

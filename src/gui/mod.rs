@@ -41,6 +41,7 @@ mod panel_cage;
 mod panel_compensation;
 mod panel_distortion;
 mod panel_history;
+mod panel_materials;
 mod panel_mesh;
 mod panel_results;
 mod panel_solve;
@@ -62,6 +63,8 @@ mod solve_session;
 mod status;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_materials;
 #[cfg(test)]
 mod tests_mesh;
 #[cfg(test)]

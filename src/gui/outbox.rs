@@ -9,6 +9,7 @@ use std::path::PathBuf;
 
 /// A wish, carried out after all panels are drawn.
 #[derive(Clone, Debug)]
+#[allow(clippy::large_enum_variant, reason = "a few per frame")]
 pub(super) enum Action {
     /// A gesture begins: what follows is one undo step.
     Begin,

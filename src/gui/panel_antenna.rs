@@ -2,10 +2,11 @@
 
 use super::field::{Number, Refused, rows, section};
 use super::outbox::Outbox;
+use super::panel_materials::{dielectric, metal, own_name, resistors};
 use super::theme::Tokens;
 use super::ui_state::UiState;
 use crate::antenna::{FirstGuess, first_guess};
-use crate::project::{AntennaSpec, Edit};
+use crate::project::{AntennaSpec, Edit, Project};
 use crate::units::{GHZ, to_mm};
 use egui::{RichText, Ui};
 
@@ -67,27 +68,74 @@ fn groups() -> [(&'static str, Vec<(Number, Access)>); 4] {
 }
 
 /// Draws the panel.
-pub(super) fn ui(ui: &mut Ui, antenna: &AntennaSpec, state: &mut UiState, out: &mut Outbox) {
+pub(super) fn ui(ui: &mut Ui, project: &Project, state: &mut UiState, out: &mut Outbox) {
+    let antenna = &project.antenna;
     let refused = state.refused.clone();
     let refused = Refused(refused.as_ref());
     for (title, numbers) in groups() {
         section(ui, title, true, |ui| {
             rows(ui, title, |ui| {
                 for (number, access) in &numbers {
+                    before(ui, number.place, project, out);
                     let mut new = antenna.clone();
                     let value = *access(&mut new);
                     number.row(ui, value, refused, out, |v| {
                         *access(&mut new) = v;
+                        // Other values are another material.
+                        match number.place {
+                            "substrate.eps_r" | "substrate.tan_delta" => new.substrate.name.clear(),
+                            "sheath.eps_r" | "sheath.tan_delta" => new.sheath.name.clear(),
+                            _ => {}
+                        }
                         Edit::SetAntenna(new)
                     });
+                    if number.place == "substrate.tan_delta" {
+                        own_name(ui, project, &mut state.material_name, refused, out);
+                    }
                 }
-                if title == "Coaxial line" {
-                    segments(ui, antenna, refused, out);
-                }
+                after(ui, title, antenna, refused, out);
             });
         });
     }
+    section(ui, "Resistors", true, |ui| resistors(ui, antenna, refused, out));
     section(ui, "First guess", true, |ui| guess(ui, antenna, state, refused, out));
+}
+
+/// The choice of a material, before its values.
+fn before(ui: &mut Ui, place: &str, project: &Project, out: &mut Outbox) {
+    let (antenna, own) = (&project.antenna, &project.materials[..]);
+    match place {
+        "substrate.eps_r" => {
+            let label = ("Material", "Of the substrate; changing its values makes it a custom one");
+            dielectric(ui, label, (&antenna.substrate, own), out, |substrate| {
+                Edit::SetAntenna(AntennaSpec { substrate, ..antenna.clone() })
+            });
+        }
+        "sheath.eps_r" => {
+            let label = ("Sheath", "Between the conductors; changing its values makes it a custom one");
+            dielectric(ui, label, (&antenna.sheath, own), out, |sheath| {
+                Edit::SetAntenna(AntennaSpec { sheath, ..antenna.clone() })
+            });
+        }
+        _ => {}
+    }
+}
+
+/// What follows the numbers of a group.
+fn after(ui: &mut Ui, title: &str, antenna: &AntennaSpec, refused: Refused<'_>, out: &mut Outbox) {
+    match title {
+        "Patch" => metal(ui, ("patch_metal", "Metal"), &antenna.patch_metal, (refused, out), |patch_metal| {
+            Edit::SetAntenna(AntennaSpec { patch_metal, ..antenna.clone() })
+        }),
+        "Substrate" => {
+            let label = ("ground_metal", "Ground metal");
+            metal(ui, label, &antenna.ground_metal, (refused, out), |ground_metal| {
+                Edit::SetAntenna(AntennaSpec { ground_metal, ..antenna.clone() })
+            });
+        }
+        "Coaxial line" => segments(ui, antenna, refused, out),
+        _ => {}
+    }
 }
 
 fn segments(ui: &mut Ui, antenna: &AntennaSpec, refused: Refused<'_>, out: &mut Outbox) {

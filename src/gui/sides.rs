@@ -32,7 +32,7 @@ impl App {
                 ui.separator();
                 ScrollArea::vertical().auto_shrink(false).id_salt(self.state.tab as u8).show(ui, |ui| {
                     match self.state.tab {
-                        Tab::Antenna => panel_antenna::ui(ui, &self.session.project().antenna, &mut self.state, out),
+                        Tab::Antenna => panel_antenna::ui(ui, self.session.project(), &mut self.state, out),
                         Tab::History => panel_history::ui(ui, self.session.history(), self.session.path.is_some(), out),
                         Tab::Cage => panel_cage::ui(ui, self.session.project(), pose.as_ref(), &mut self.state, out),
                     }

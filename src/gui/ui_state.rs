@@ -254,6 +254,9 @@ pub(super) struct UiState {
     /// Wanted frequency and input resistance of the first guess.
     pub(super) guess_freq_ghz: f64,
     pub(super) guess_ohm: f64,
+    /// Name being typed for the substrate's values.
+    #[serde(skip)]
+    pub(super) material_name: String,
     /// Where the last file or folder was.
     pub(super) last_folder: Option<PathBuf>,
     /// Files opened or saved last, newest first.
@@ -298,6 +301,7 @@ impl Default for UiState {
             equal_padding: true,
             guess_freq_ghz: 11.0,
             guess_ohm: 50.0,
+            material_name: String::new(),
             last_folder: None,
             recent_files: Vec::new(),
             is_welcomed: false,

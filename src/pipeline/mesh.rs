@@ -58,6 +58,8 @@ pub struct MeshSettings {
 pub struct Meshed {
     /// The mesh.
     pub mesh: TetMesh,
+    /// For each resistor its chain of edges through the substrate: vertices from the ground up to the patch.
+    pub posts: Vec<Vec<VertexId>>,
     /// Its figures.
     pub quality: QualityReport,
     /// What it took to recover the antenna's skin.
@@ -149,6 +151,7 @@ fn mesh_map(
     Ok(Meshed {
         quality: quality(&enclosed.mesh, Some(&|p| enclosed.sizing.at(p).size), N_WORST),
         mesh: enclosed.mesh,
+        posts: enclosed.posts,
         recovery: enclosed.recovery,
         map_distance,
         seconds: started.elapsed().as_secs_f64(),

@@ -15,6 +15,7 @@ mod estimate;
 mod fields;
 pub mod job;
 pub mod live;
+mod loads;
 mod looks;
 mod mesh;
 pub mod mesh_job;

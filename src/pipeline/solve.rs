@@ -1,6 +1,7 @@
 //! From a project to S11 and patterns: mesh, network, run, sweep, far fields.
 
 use super::PipelineError;
+use super::loads::loads;
 use super::looks::Looks;
 use super::mesh::{MeshSettings, Meshed, Shape, mesh};
 use crate::project::Project;
@@ -190,6 +191,7 @@ pub fn solve(
     let how = NetworkSettings {
         step: StepLimit::Clip(CLIPPED),
         edge_correction: settings.edge_correction,
+        loads: loads(&project.antenna.to_params(), &meshed, settings.mesh.metal),
         ..NetworkSettings::new(pulse.center)
     };
     let network = Network::<f32>::new(&meshed.mesh, &how, task)?;

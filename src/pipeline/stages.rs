@@ -3,7 +3,7 @@
 use super::PipelineError;
 use super::fields::Fields;
 use super::scene::Scene;
-use crate::antenna::{PATCH, PatchParams, flat_complex};
+use crate::antenna::{PATCH, PatchParams, Resistor, flat_complex};
 use crate::cage::Cage;
 use crate::deform::{
     Carried, Carry, GreenCage, GreenWeights, Placement, Pose, SmoothMap, SplitSettings, SplitSurface, Warp, split,
@@ -215,13 +215,14 @@ fn compensate_metric(scene: &Scene, task: &Task) -> Result<Compensated, Compensa
     solve(scene, solve(&plain, 1.0)?.radius_factor)
 }
 
-/// The antenna with its patch and feed place scaled.
+/// The antenna with its patch, feed place and resistors' places scaled.
 fn scaled(params: &PatchParams, scale: DVec2) -> PatchParams {
     PatchParams {
         width: params.width * scale.x,
         length: params.length * scale.y,
         inset: params.inset * scale.y,
         feed_offset: params.feed_offset * scale.x,
+        resistors: params.resistors.iter().map(|r| Resistor { at: r.at * scale, ..*r }).collect(),
         ..params.clone()
     }
 }

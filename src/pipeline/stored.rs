@@ -8,7 +8,7 @@
 use super::mesh::Shape;
 use super::solve::{SolveSettings, Solved};
 use crate::io::{IoError, document};
-use crate::project::{CageSpec, CompensationMode, PresetSpec, Project, RuleSpec, Settings};
+use crate::project::{AntennaSpec, CageSpec, CompensationMode, MetalSpec, PresetSpec, Project, RuleSpec, Settings};
 use crate::results::{FittedResonance, Sweep};
 use crate::tlm::SOLVER_VERSION;
 use nalgebra::Complex;
@@ -87,6 +87,9 @@ impl Job {
 fn relevant(project: &Project, shape: Shape) -> Project {
     let mut project = project.clone();
     project.presets.retain(|entry| entry.enabled);
+    // Materials are what they are by their values.
+    project.materials.clear();
+    project.antenna = nameless(project.antenna);
     let defaults = Settings::default();
     match shape {
         Shape::Flat => project = Project { antenna: project.antenna, ..Project::default() },
@@ -107,6 +110,18 @@ fn relevant(project: &Project, shape: Shape) -> Project {
         }
     }
     project
+}
+
+/// An antenna whose materials have no names.
+fn nameless(mut antenna: AntennaSpec) -> AntennaSpec {
+    antenna.substrate.name.clear();
+    antenna.sheath.name.clear();
+    for metal in [&mut antenna.patch_metal, &mut antenna.ground_metal] {
+        if let MetalSpec::Sheet { name, .. } = metal {
+            name.clear();
+        }
+    }
+    antenna
 }
 
 /// The folder in which a project's results are kept: `antenna.json` has `antenna.results`.
@@ -244,7 +259,8 @@ impl Stored {
 mod tests {
     use super::*;
     use crate::pipeline::{Density, MeshSettings, StopRule};
-    use crate::project::{BendPlane, PresetEntry};
+    use crate::project::materials::{DIELECTRICS, METALS};
+    use crate::project::{BendPlane, PresetEntry, ResistorSpec};
 
     fn bent() -> Project {
         let preset =
@@ -265,7 +281,11 @@ mod tests {
     #[test]
     fn the_key_follows_what_the_result_depends_on() {
         type Change = fn(&mut Project);
-        let changes: [(Change, [bool; 3]); 7] = [
+        let changes: [(Change, [bool; 3]); 11] = [
+            (|p| p.antenna.ground_metal = METALS[0].to_spec(), [true, true, true]),
+            (|p| p.antenna.substrate.name = "other".to_owned(), [false, false, false]),
+            (|p| p.materials.push(DIELECTRICS[1].to_spec()), [false, false, false]),
+            (|p| p.antenna.resistors.push(ResistorSpec { x_mm: 3.0, y_mm: 2.0, ohm: 50.0 }), [true, true, true]),
             (|p| p.antenna.width_mm += 0.01, [true, true, true]),
             (|p| p.presets[0].enabled = false, [true, false, true]),
             (|p| p.cage.padding_mm[2] += 1.0, [true, false, false]),

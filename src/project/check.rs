@@ -4,6 +4,7 @@
 //! Ranges keep all that is built from a project finite and bounded; whether a preset bends the cage too far depends
 //! on the cage and is told by [`crate::cage::pose`], so that such a project can still be opened and put right.
 
+use super::materials::DIELECTRICS;
 use super::{AntennaSpec, CageSpec, PresetSpec, Project, Settings};
 use crate::antenna::ParamError;
 use crate::cage::build::MAX_SEGMENTS;
@@ -44,8 +45,30 @@ pub enum ProjectError {
         /// How many there are.
         count: usize,
     },
+    /// A material of the user's own has no name.
+    #[error("materials[{index}] has no name: give it one")]
+    NamelessMaterial {
+        /// Place in the list.
+        index: usize,
+    },
+    /// Two materials have the same name.
+    #[error("materials[{index}] is called \"{name}\", as another material is: choose another name")]
+    NameTaken {
+        /// Place in the list.
+        index: usize,
+        /// The name.
+        name: String,
+    },
+    /// There are too many materials.
+    #[error("there are {count} materials, but at most {MAX_MATERIALS} can be kept: remove some")]
+    TooManyMaterials {
+        /// How many there are.
+        count: usize,
+    },
 }
 
+/// More materials than this are no list to choose from.
+pub const MAX_MATERIALS: usize = 64;
 /// More presets than this are no design but a broken file; each costs a pass over the cage.
 pub const MAX_PRESETS: usize = 64;
 /// Range of a length of the antenna, mm: 0.1 micrometre to 100 m. Beyond, coordinates of one model differ by so much
@@ -83,7 +106,28 @@ impl Project {
                 in_range(|| format!("hand_edits.{vertex}"), *value, OFFSET_MM)?;
             }
         }
-        self.settings.validate()
+        self.settings.validate()?;
+        self.check_materials()
+    }
+
+    fn check_materials(&self) -> Result<(), ProjectError> {
+        let count = self.materials.len();
+        if count > MAX_MATERIALS {
+            return Err(ProjectError::TooManyMaterials { count });
+        }
+        for (index, material) in self.materials.iter().enumerate() {
+            let name = &material.name;
+            if name.trim().is_empty() {
+                return Err(ProjectError::NamelessMaterial { index });
+            }
+            let is_taken = self.materials[..index].iter().any(|m| m.name == *name);
+            if is_taken || DIELECTRICS.iter().any(|d| d.name == name) {
+                return Err(ProjectError::NameTaken { index, name: name.clone() });
+            }
+            in_range(|| format!("materials[{index}].eps_r"), material.eps_r, (1.0, 1000.0))?;
+            in_range(|| format!("materials[{index}].tan_delta"), material.tan_delta, (0.0, 1.0))?;
+        }
+        Ok(())
     }
 
     /// The rest cage around this antenna.
@@ -179,7 +223,7 @@ fn in_range(field: impl Fn() -> String, value: f64, (lo, hi): (f64, f64)) -> Res
 
 #[cfg(test)]
 mod tests {
-    use super::super::PresetEntry;
+    use super::super::{MaterialSpec, PresetEntry};
     use super::*;
 
     #[test]
@@ -202,6 +246,10 @@ mod tests {
         assert!(project.validate().is_err(), "above");
     }
 
+    fn own(name: &str) -> MaterialSpec {
+        MaterialSpec { name: name.to_owned(), eps_r: 1.3, tan_delta: 0.02 }
+    }
+
     #[test]
     fn each_fault_names_its_field() {
         type Spoil = fn(&mut Project);
@@ -211,7 +259,12 @@ mod tests {
         switched_off.presets.push(entry);
         let message = switched_off.validate().expect_err("NaN, even switched off").to_string();
         assert!(message.starts_with("presets[0].radius_mm is NaN"), "{message}");
-        let faults: [(&str, Spoil); 9] = [
+        let faults: [(&str, Spoil); 14] = [
+            ("materials[0] has no name", |p| p.materials = vec![own(" ")]),
+            ("materials[1] is called \"my felt\", as another", |p| p.materials = vec![own("my felt"); 2]),
+            ("materials[0] is called \"FR-4\", as another", |p| p.materials = vec![own("FR-4")]),
+            ("materials[0].eps_r is 0.5", |p| p.materials = vec![MaterialSpec { eps_r: 0.5, ..own("a") }]),
+            ("there are 65 materials", |p| p.materials = vec![own("a"); 65]),
             ("antenna.width_mm is 1", |p| p.antenna.width_mm = 1e308),
             ("antenna.length ", |p| p.antenna.length_mm = 30.0),
             ("antenna.feed_offset_mm", |p| p.antenna.feed_offset_mm = f64::INFINITY),

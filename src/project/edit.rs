@@ -4,10 +4,11 @@
 //! An edit carries whole new values (a specification, a preset, offsets), never differences, so that applying it twice
 //! changes nothing more. Not handled here: whether the changed cage can be posed; the pipeline tells.
 
-use super::{AntennaSpec, CageSpec, PresetEntry, Project, ProjectError, Settings};
+use super::{AntennaSpec, CageSpec, MaterialSpec, PresetEntry, Project, ProjectError, Settings};
 
 /// One change of a project.
 #[derive(Clone, Debug, PartialEq)]
+#[allow(clippy::large_enum_variant, reason = "made once per change")]
 pub enum Edit {
     /// Sets all dimensions and materials of the antenna.
     SetAntenna(AntennaSpec),
@@ -47,6 +48,8 @@ pub enum Edit {
     ClearHandEdits,
     /// Sets how the deformed antenna is computed.
     SetSettings(Settings),
+    /// Replaces the list of the user's own materials.
+    SetMaterials(Vec<MaterialSpec>),
     /// Puts another whole project in its place.
     Restore(Box<Project>),
 }
@@ -117,6 +120,7 @@ impl Edit {
             }
             Self::ClearHandEdits => project.hand_edits.clear(),
             Self::SetSettings(settings) => project.settings = settings,
+            Self::SetMaterials(materials) => project.materials = materials,
             Self::Restore(other) => *project = *other,
         }
         Ok(())

@@ -1,16 +1,17 @@
 //! The project file: versioned JSON, read with every doubt and written so that no failure costs the old file.
 //!
 //! ```json
-//! {"format": "conformant-project", "version": 1, "project": {"antenna": {…}, …}}
+//! {"format": "conformant-project", "version": 2, "project": {"antenna": {…}, …}}
 //! ```
 //!
 //! Versioning: a reader knows all versions up to [`VERSION`] and refuses newer ones by name. The version goes up when a
 //! field is added, removed or changes its meaning; each older version keeps its reader, which brings the value to the
-//! present form. Unknown fields are errors, because dropping them on the next save would lose what the user decided.
+//! present form. Version 1 knew no lossy metal, no resistors and no names of materials: it is read as version 2 is,
+//! where what is not said is not there, and materials of the library get their names. Unknown fields are errors, because dropping them on the next save would lose what the user decided.
 //! Numbers are written with the fewest digits that give the same bits back. What is read has passed
 //! [`Project::validate`]. Not handled: comments in the file, and two programs saving at the same time (the last wins).
 
-use super::{Project, ProjectError};
+use super::{AntennaSpec, Project, ProjectError};
 use crate::io::{self, IoError};
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
@@ -19,7 +20,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// The newest version that this program reads, and the one it writes.
-pub const VERSION: u64 = 1;
+pub const VERSION: u64 = 2;
 /// The tag by which a project file is known.
 const FORMAT: &str = "conformant-project";
 /// A project with every vertex of the finest cage moved takes about a megabyte; anything near this limit is no project.
@@ -150,15 +151,25 @@ fn parse(path: &Path, text: &[u8]) -> Result<Project, FileError> {
         return Err(FileError::Newer { path: path.to_owned(), version: header.version });
     }
     let json = &mut serde_json::Deserializer::from_slice(text);
-    let document: Document<Project> = serde_path_to_error::deserialize(json).map_err(|error| FileError::Field {
+    let mut document: Document<Project> = serde_path_to_error::deserialize(json).map_err(|error| FileError::Field {
         path: path.to_owned(),
         line: error.inner().line(),
         column: error.inner().column(),
         field: error.path().to_string(),
         message: without_place(error.inner()),
     })?;
+    if header.version == 1 {
+        name_materials(&mut document.project.antenna);
+    }
     document.project.validate().map_err(|source| FileError::Invalid { path: path.to_owned(), source })?;
     Ok(document.project)
+}
+
+/// Names the materials of an antenna of version 1, which had none, where they are ones of the library.
+fn name_materials(antenna: &mut AntennaSpec) {
+    for material in [&mut antenna.substrate, &mut antenna.sheath] {
+        *material = material.clone().recognized();
+    }
 }
 
 /// The parser's message without its own " at line 1 column 2".
@@ -169,7 +180,10 @@ fn without_place(error: &serde_json::Error) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{BendPlane, CompensationMode, PresetEntry, PresetSpec, RuleSpec, ScopeSpec};
+    use super::super::{
+        BendPlane, CompensationMode, MaterialSpec, MetalSpec, PresetEntry, PresetSpec, ResistorSpec, RuleSpec,
+        ScopeSpec,
+    };
     use super::*;
 
     fn text(project: &Project) -> String {
@@ -205,6 +219,14 @@ mod tests {
         for vertex in 0..40 {
             project.hand_edits.insert(vertex * 6, [any(1.0), any(1e-8), any(1e5)]);
         }
+        project.antenna.patch_metal =
+            MetalSpec::Sheet { name: "\u{3b1} \"ink\"".to_owned(), ohm_per_square: 0.5 + any(0.9) };
+        project.antenna.ground_metal = MetalSpec::Sheet { name: String::new(), ohm_per_square: 1e-6 };
+        project.antenna.resistors = vec![
+            ResistorSpec { x_mm: 2.45 + any(0.04), y_mm: any(1e-300), ohm: 50.0 + any(99.0) },
+            ResistorSpec { x_mm: -2.45 + any(0.04), y_mm: -0.0, ohm: 1e7 },
+        ];
+        project.materials = vec![MaterialSpec { name: "my felt".to_owned(), eps_r: 1.5 + any(0.5), tan_delta: 0.02 }];
         project.settings.tolerance_mm = 0.011 + any(1e-3);
         project.settings.compensation = CompensationMode::Wl;
         project.settings.scope = ScopeSpec::Patch;
@@ -247,7 +269,7 @@ mod tests {
         let newer = r#"{"format": "conformant-project", "version": 7, "project": {"antenna": "other"}}"#;
         assert_eq!(
             message(newer),
-            "a.json was made by a newer Conformant, version 7; this one reads up to 1: update Conformant to open it"
+            "a.json was made by a newer Conformant, version 7; this one reads up to 2: update Conformant to open it"
         );
         for other in ["{}", "[]", "3", r#"{"format": "else", "version": 1, "project": {}}"#] {
             assert!(message(other).contains("is not a Conformant project"), "{other}");
@@ -262,11 +284,26 @@ mod tests {
     }
 
     #[test]
+    fn a_file_of_version_1_is_read_as_an_antenna_without_losses_in_its_metal() {
+        let new = text(&Project::default());
+        let old = new.replacen("\"version\": 2", "\"version\": 1", 1).replace("\"name\": \"RT/duroid 5880\",", "");
+        for unknown in ["metal", "resistors", "materials", "name"] {
+            assert!(!old.contains(unknown), "version 1 had no {unknown}: {old}");
+        }
+        let project = parse(Path::new("a"), old.as_bytes()).expect("as version 1 wrote it");
+        assert_eq!(project, Project::default(), "perfect metal, no resistors, named materials");
+        let other = parse(Path::new("a"), old.replace("2.2", "2.25").as_bytes()).expect("as version 1 wrote it");
+        assert_eq!(other.antenna.substrate.name, "", "values of no known material");
+    }
+
+    #[test]
     fn a_wrong_field_is_named_with_its_path_line_and_column() {
         let mut project = Project::default();
         project
             .presets
             .push(PresetEntry { enabled: true, preset: PresetSpec::Convex { radius_mm: 20.0, amplitude_mm: 10.0 } });
+        project.antenna.ground_metal = MetalSpec::Sheet { name: String::new(), ohm_per_square: 0.05 };
+        project.antenna.resistors.push(ResistorSpec { x_mm: 3.0, y_mm: 2.0, ohm: 50.0 });
         let good = text(&project);
         assert!(parse(Path::new("a"), good.as_bytes()).is_ok(), "the text before it is spoiled");
         let faults = [
@@ -278,6 +315,10 @@ mod tests {
             ("10.83", "1e999", "project.antenna.width_mm: number out of range"),
             ("10.83", "1e300", "a.json: antenna.width_mm is 1"),
             ("\"inset_mm\": 1.75", "\"inset_mm\": 9.0", "a.json: antenna.inset is 9.0000 mm"),
+            ("\"x_mm\": 3.0", "\"x_mm\": 6.0", "a.json: antenna.resistors[0] (resistor 1) at (6.0000, 2.0000) mm"),
+            ("\"x_mm\": 3.0", "\"x\": 3.0", "project.antenna.resistors[0].x: unknown field `x`"),
+            ("\"kind\": \"sheet\"", "\"kind\": \"wool\"", "project.antenna.ground_metal.kind: unknown variant `wool`"),
+            ("0.05", "-0.05", "a.json: antenna.ground_metal is -0.05, but must lie between 0.000001 and 1000000"),
         ];
         for (from, to, expected) in faults {
             assert!(good.contains(from), "{from} stands in the text");

@@ -10,6 +10,7 @@ pub mod edit;
 mod example;
 pub mod file;
 pub mod history;
+pub mod materials;
 mod name;
 
 pub use check::ProjectError;
@@ -17,9 +18,9 @@ pub use edit::{Edit, EditError};
 pub use example::Example;
 pub use history::History;
 
-use crate::antenna::{Dielectric, PatchParams};
+use crate::antenna::{Conductor, Dielectric, PatchParams, Resistor};
 use crate::cage::{Axis, BendRule, CageParams, Preset, Section};
-use crate::geometry::DVec3;
+use crate::geometry::{DVec2, DVec3};
 use crate::units::{from_mm, to_mm};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -38,6 +39,9 @@ pub struct Project {
     pub hand_edits: BTreeMap<u32, [f64; 3]>,
     /// How the deformed antenna is computed.
     pub settings: Settings,
+    /// Materials of the user's own, to choose from by name.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub materials: Vec<MaterialSpec>,
 }
 
 /// Dimensions and materials of the antenna; lengths in millimetres. See [`PatchParams`] for their meaning.
@@ -61,12 +65,50 @@ pub struct AntennaSpec {
     pub coax_segments: usize,
     pub substrate: MaterialSpec,
     pub sheath: MaterialSpec,
+    #[serde(default, skip_serializing_if = "MetalSpec::is_perfect")]
+    pub patch_metal: MetalSpec,
+    #[serde(default, skip_serializing_if = "MetalSpec::is_perfect")]
+    pub ground_metal: MetalSpec,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub resistors: Vec<ResistorSpec>,
+}
+
+/// What a sheet of metal is made of.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum MetalSpec {
+    /// Without loss.
+    #[default]
+    Perfect,
+    /// A lossy sheet, such as conductive fabric.
+    Sheet {
+        /// What it is called in the library; empty for a value typed by hand.
+        #[serde(default, skip_serializing_if = "String::is_empty")]
+        name: String,
+        /// Ohm per square of the whole sheet, both of its sides together.
+        ohm_per_square: f64,
+    },
+}
+
+/// A resistor between ground and patch, at a place of the flat antenna.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ResistorSpec {
+    /// Across the width, from the patch's center, mm.
+    pub x_mm: f64,
+    /// Along the length, from the patch's center, mm.
+    pub y_mm: f64,
+    /// Ohm.
+    pub ohm: f64,
 }
 
 /// A dielectric.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MaterialSpec {
+    /// What it is called, in the library or by the user; empty for values typed by hand. It does not rule the values.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub name: String,
     /// Relative permittivity.
     pub eps_r: f64,
     /// Loss tangent.
@@ -165,7 +207,7 @@ pub enum ScopeSpec {
 impl Default for AntennaSpec {
     /// The paper's antenna.
     fn default() -> Self {
-        let duroid = MaterialSpec { eps_r: 2.2, tan_delta: 0.0009 };
+        let duroid = materials::DIELECTRICS[0].to_spec();
         Self {
             width_mm: 10.83,
             length_mm: 8.177,
@@ -181,8 +223,11 @@ impl Default for AntennaSpec {
             coax_length_mm: 3.0,
             pin_segments: 14,
             coax_segments: 28,
-            substrate: duroid,
+            substrate: duroid.clone(),
             sheath: duroid,
+            patch_metal: MetalSpec::Perfect,
+            ground_metal: MetalSpec::Perfect,
+            resistors: Vec::new(),
         }
     }
 }
@@ -205,8 +250,27 @@ impl Default for Settings {
 }
 
 impl MaterialSpec {
-    fn to_dielectric(self) -> Dielectric {
+    fn to_dielectric(&self) -> Dielectric {
         Dielectric { eps_r: self.eps_r, tan_delta: self.tan_delta }
+    }
+}
+
+impl MetalSpec {
+    fn is_perfect(&self) -> bool {
+        *self == Self::Perfect
+    }
+
+    fn to_conductor(&self) -> Conductor {
+        match self {
+            Self::Perfect => Conductor::Perfect,
+            Self::Sheet { ohm_per_square, .. } => Conductor::Sheet(*ohm_per_square),
+        }
+    }
+}
+
+impl ResistorSpec {
+    fn to_resistor(self) -> Resistor {
+        Resistor { at: DVec2::new(from_mm(self.x_mm), from_mm(self.y_mm)), resistance: self.ohm }
     }
 }
 
@@ -231,6 +295,9 @@ impl AntennaSpec {
             coax_segments: self.coax_segments,
             substrate: self.substrate.to_dielectric(),
             sheath: self.sheath.to_dielectric(),
+            patch_metal: self.patch_metal.to_conductor(),
+            ground_metal: self.ground_metal.to_conductor(),
+            resistors: self.resistors.iter().map(|r| r.to_resistor()).collect(),
         }
     }
 }

@@ -24,6 +24,9 @@ const NAMES: &[(&str, &str)] = &[
     ("cage.padding_mm", "Cage padding"),
     ("cage.segments", "Cage segments"),
     ("settings.tolerance_mm", "Split tolerance"),
+    ("antenna.substrate", "Substrate material"),
+    ("antenna.sheath", "Sheath material"),
+    ("materials", "Own materials"),
 ];
 
 /// Names the difference between two projects.
@@ -36,12 +39,17 @@ pub(super) fn step_name(before: &Project, after: &Project) -> String {
     }
     let mut changed = Vec::new();
     compare(&before_fields, &after_fields, "", &mut changed);
+    // A material's name goes with its values.
+    if changed.iter().any(|(path, _)| !path.ends_with(".name")) {
+        changed.retain(|(path, _)| !path.ends_with(".name"));
+    }
     if let [(path, value), others @ ..] = changed.as_slice() {
-        let part = path.split('.').next().unwrap_or_default();
-        return match others {
-            [] => field_name(path, value),
-            _ if others.iter().all(|(p, _)| p.split('.').next() == Some(part)) => field_name(part, &Value::Null),
-            _ => "Whole project".to_owned(),
+        if others.is_empty() {
+            return field_name(path, value);
+        }
+        return match others.iter().fold(path.as_str(), |part, (other, _)| common(part, other)) {
+            "" => "Whole project".to_owned(),
+            part => field_name(part, &Value::Null),
         };
     }
     if before.presets == after.presets {
@@ -69,6 +77,18 @@ fn compare(before: &Value, after: &Value, path: &str, changed: &mut Vec<(String,
         _ if before != after => changed.push((path.to_owned(), after.clone())),
         _ => {}
     }
+}
+
+/// The part of two paths that they have in common.
+fn common<'a>(path: &'a str, other: &str) -> &'a str {
+    let mut end = 0;
+    for (part, same) in path.split('.').zip(other.split('.')) {
+        if part != same {
+            break;
+        }
+        end += part.len() + 1;
+    }
+    &path[..end.saturating_sub(1)]
 }
 
 /// A field in words; a choice is told with what was chosen.
@@ -159,6 +179,7 @@ fn vertices_name(before: &BTreeMap<u32, [f64; 3]>, after: &BTreeMap<u32, [f64; 3
 
 #[cfg(test)]
 mod tests {
+    use super::super::materials::{METALS, dielectric_named};
     use super::super::{BendPlane, CompensationMode, Edit, PresetEntry, PresetSpec, RuleSpec, Settings};
     use super::*;
 
@@ -187,6 +208,15 @@ mod tests {
             Edit::SetAntenna(antenna)
         };
         assert_eq!(name(&[], antenna(|a| a.height_mm = 1.0)), "Substrate height");
+        assert_eq!(
+            name(&[], antenna(|a| a.substrate = dielectric_named("FR-4").expect("known"))),
+            "Substrate material"
+        );
+        assert_eq!(
+            name(&[], antenna(|a| (a.substrate.eps_r, a.substrate.name) = (3.0, String::new()))),
+            "Substrate permittivity"
+        );
+        assert_eq!(name(&[], antenna(|a| a.patch_metal = METALS[0].to_spec())), "Patch metal");
         assert_eq!(name(&[], antenna(|a| a.pin_radius_mm = 0.5)), "Pin radius");
         assert_eq!(name(&[], antenna(|a| (a.width_mm, a.length_mm) = (9.0, 7.0))), "Antenna dimensions");
         let padded = super::super::CageSpec { padding_mm: [2.0; 3], ..base.cage };

@@ -52,6 +52,8 @@ pub enum EncloseError {
 pub struct Enclosed {
     /// The mesh.
     pub mesh: TetMesh,
+    /// For each resistor a chain of edges through the substrate: its vertices from the ground up to the patch.
+    pub posts: Vec<Vec<VertexId>>,
     /// What it took to recover the antenna's skin.
     pub recovery: RecoveryReport,
     /// The edge lengths that were wanted.
@@ -65,7 +67,8 @@ pub struct Enclosed {
 pub fn enclose(block: &Block, settings: &AirSettings, task: &Task) -> Result<Enclosed, EncloseError> {
     let hull = Hull::new(block, settings)?;
     let filled = fill(&hull.surface, &hull.inner, settings.sizing, task)?;
-    Ok(Enclosed { mesh: merge(block, &hull, &filled), recovery: filled.recovery, sizing: filled.sizing })
+    let (mesh, posts) = merge(block, &hull, &filled);
+    Ok(Enclosed { mesh, posts, recovery: filled.recovery, sizing: filled.sizing })
 }
 
 /// The surface of the air, and which of its vertices is which of the block's.
@@ -126,8 +129,8 @@ impl Hull {
     }
 }
 
-/// One mesh of the block's cells and the air's.
-fn merge(block: &Block, hull: &Hull, filled: &Filled) -> TetMesh {
+/// One mesh of the block's cells and the air's, and the block's chains of edges in it.
+fn merge(block: &Block, hull: &Hull, filled: &Filled) -> (TetMesh, Vec<Vec<VertexId>>) {
     // Every vertex of the air in the numbering of the block, new ones after it.
     let mut number = vec![VertexId::NONE; filled.mesh.vertices.len()];
     for (v, in_block) in hull.on_skin.iter().enumerate() {
@@ -157,7 +160,8 @@ fn merge(block: &Block, hull: &Hull, filled: &Filled) -> TetMesh {
     let present: HashSet<_> = tets.iter().flat_map(|t| (0..4).map(|i| face_key(t.face(i)))).collect();
     // A face between two conductors bounds nothing.
     let faces = cells.faces.into_iter().chain(of_air).filter(|f| present.contains(&face_key(f.vertices))).collect();
-    compact(TetMesh { vertices, tets, faces, regions: block.regions.clone(), groups: block.groups.clone() })
+    let mesh = TetMesh { vertices, tets, faces, regions: block.regions.clone(), groups: block.groups.clone() };
+    compact(mesh, &block.posts)
 }
 
 /// The block's cells while edges are halved.
@@ -191,8 +195,8 @@ impl Cells {
     }
 }
 
-/// Leaves out vertices that no tetrahedron uses.
-fn compact(mesh: TetMesh) -> TetMesh {
+/// Leaves out vertices that no tetrahedron uses; gives the new numbers of chains of those that one does.
+fn compact(mesh: TetMesh, chains: &[Vec<VertexId>]) -> (TetMesh, Vec<Vec<VertexId>>) {
     let mut number: HashMap<VertexId, VertexId> = HashMap::new();
     let mut used: Vec<VertexId> = mesh.tets.iter().flat_map(|t| t.vertices).collect();
     used.sort_unstable();
@@ -201,10 +205,12 @@ fn compact(mesh: TetMesh) -> TetMesh {
         number.insert(*v, VertexId::new(k));
     }
     let new = |v: VertexId| number[&v];
-    TetMesh {
+    let chains = chains.iter().map(|chain| chain.iter().map(|&v| new(v)).collect()).collect();
+    let mesh = TetMesh {
         vertices: used.iter().map(|v| mesh.vertices[v.index()]).collect(),
         tets: mesh.tets.iter().map(|t| Tet { vertices: t.vertices.map(new), ..*t }).collect(),
         faces: mesh.faces.iter().map(|f| MarkedFace { vertices: f.vertices.map(new), ..*f }).collect(),
         ..mesh
-    }
+    };
+    (mesh, chains)
 }

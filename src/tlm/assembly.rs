@@ -35,8 +35,8 @@ struct BoundaryFaces {
     /// The port, if the mesh has one.
     port: Option<Port>,
     outer: HashSet<[VertexId; 3]>,
-    /// Conductance of faces of lossy sheets for each cell at the face, in units of the free-space admittance.
-    sheets: HashMap<[VertexId; 3], f64>,
+    /// Conductance of lossy sheets along each of their edges, in units of the free-space admittance.
+    sheets: HashMap<[VertexId; 2], f64>,
 }
 
 struct Port {
@@ -52,6 +52,19 @@ fn edges_of([a, b, c]: [VertexId; 3]) -> [[VertexId; 2]; 3] {
     [[a, b], [a, c], [b, c]]
 }
 
+/// Conductances along the edges 01, 02 and 12 of a triangle that is a sheet of unit conductance per square: half the
+/// cotangents of the angles opposite to them, which lose what the sheet does in any constant field.
+///
+/// They stand at the edges of the mesh, where the currents of all cells around meet, like resistors: shared out among
+/// the cells they would be fed by each cell's own current, whose parts that cancel at the edge would be lost too.
+fn edge_shares([a, b, c]: [DVec3; 3]) -> [f64; 3] {
+    let half_cotangent = |at: DVec3, p: DVec3, q: DVec3| {
+        let (u, v) = (p - at, q - at);
+        0.5 * u.dot(v) / u.cross(v).length()
+    };
+    [half_cotangent(c, a, b), half_cotangent(b, a, c), half_cotangent(a, b, c)]
+}
+
 /// The faces of a role, corners ascending.
 fn faces_with(mesh: &TetMesh, role: FaceRole) -> impl Iterator<Item = [VertexId; 3]> {
     mesh.faces.iter().filter(move |f| mesh.groups[f.group].role == role).map(|f| face_key(f.vertices))
@@ -63,12 +76,14 @@ impl BoundaryFaces {
         let conductors = || mesh.faces.iter().filter(|f| mesh.groups[f.group].role == FaceRole::Conductor);
         let perfect = conductors().filter(|f| resistance(f.group).is_none());
         let lossy = conductors().filter_map(|f| Some((face_key(f.vertices), ETA0 / resistance(f.group)?)));
-        let mut sheets: HashMap<[VertexId; 3], f64> = lossy.collect();
-        let is_sheet = |face: &[VertexId; 3]| sheets.contains_key(face);
-        let mut n_cells: HashMap<[VertexId; 3], f64> = HashMap::new();
-        let faces = mesh.tets.iter().filter(|_| !sheets.is_empty()).flat_map(|t| (0..4).map(|i| face_key(t.face(i))));
-        faces.filter(is_sheet).for_each(|face| *n_cells.entry(face).or_default() += 1.0);
-        sheets.iter_mut().for_each(|(face, conductance)| *conductance /= n_cells[face]);
+        let mut sheets: HashMap<[VertexId; 2], f64> = HashMap::new();
+        for (face, conductance) in lossy {
+            for (edge, share) in edges_of(face).into_iter().zip(edge_shares(face.map(|v| mesh.vertices[v.index()]))) {
+                *sheets.entry(edge).or_default() += share * conductance;
+            }
+        }
+        // Negative where the triangles at an edge have wide angles opposite to it: nothing passive.
+        sheets.retain(|_, conductance| *conductance > 0.0);
         Ok(Self {
             conducting: perfect.flat_map(|f| edges_of(face_key(f.vertices))).collect(),
             port: Port::new(mesh, loads)?,
@@ -78,9 +93,7 @@ impl BoundaryFaces {
     }
 
     fn is_boundary(&self, corners: [VertexId; 4], region: usize) -> bool {
-        faces_of(corners).into_iter().any(|(_, f)| {
-            self.outer.contains(&f) || self.sheets.contains_key(&f) || self.port_face(f, region).is_some()
-        })
+        faces_of(corners).into_iter().any(|(_, f)| self.outer.contains(&f) || self.port_face(f, region).is_some())
     }
 
     /// The port with the place of a face in it, if the face is one of its and the region lies behind it.
@@ -171,9 +184,10 @@ impl<'a> Assembly<'a> {
         self.faces.port.as_ref().map(|p| &p.mode)
     }
 
-    /// Conductance of the resistors at an edge, in units of the free-space admittance.
+    /// Conductance of the resistors and lossy sheets at an edge, in units of the free-space admittance.
     pub(super) fn conductance(&self, edge: [VertexId; 2]) -> f64 {
-        self.loads.resistors.iter().filter(|r| r.edge == edge).map(|r| ETA0 / r.resistance).sum()
+        let resistors = self.loads.resistors.iter().filter(|r| r.edge == edge).map(|r| ETA0 / r.resistance);
+        resistors.sum::<f64>() + self.faces.sheets.get(&edge).copied().unwrap_or(0.0)
     }
 
     fn region(&self, tet: usize) -> usize {
@@ -218,8 +232,6 @@ impl<'a> Assembly<'a> {
             if self.faces.outer.contains(&face) {
                 add(&(self.face_mass(face)
                     * (self.mesh.regions[region.index()].eps_r / self.loads.mu_r(region)).sqrt()));
-            } else if let Some(&sheet) = self.faces.sheets.get(&face) {
-                add(&(self.face_mass(face) * sheet));
             } else if let Some((port, f)) = self.faces.port_face(face, region.index()) {
                 add(&port.faces[f].conductance);
                 for (a, &place) in places.iter().enumerate() {
@@ -231,20 +243,11 @@ impl<'a> Assembly<'a> {
         (conductance, source, observation)
     }
 
-    /// Conductances of lossy material and sheets in a cell; `None` where nothing is lost. The absorber stands for the
-    /// outside and does not count.
+    /// Conductances of lossy material in a cell; `None` where nothing is lost. The absorber stands for the outside and
+    /// does not count.
     pub(super) fn dissipation(&self, k: usize) -> Option<Matrix6<f64>> {
-        let (corners, tet) = self.cells[k];
-        let conductivity = self.conductivity(tet);
-        let sheets: Vec<_> = faces_of(corners).into_iter().filter(|(_, f)| self.faces.sheets.contains_key(f)).collect();
-        if conductivity <= 0.0 && sheets.is_empty() {
-            return None;
-        }
-        let mut loss = self.cell(k).capacitance * conductivity;
-        for (places, face) in sheets {
-            add_face(&mut loss, places, &(self.face_mass(face) * self.faces.sheets[&face]));
-        }
-        Some(loss)
+        let conductivity = self.conductivity(self.cells[k].1);
+        (conductivity > 0.0).then(|| self.cell(k).capacitance * conductivity)
     }
 
     /// * `x`: half a time step, m.

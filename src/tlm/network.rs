@@ -62,9 +62,9 @@ pub struct Network<T> {
     pub(super) weights: Vec<T>,
     /// By lane over all blocks: number of the cell in the mesh, `u32::MAX` for filling.
     tets: Vec<u32>,
-    /// Cells of lossy material or at lossy sheets.
+    /// Cells of lossy material.
     pub(super) lossy: Vec<Lossy>,
-    /// Edges with resistors, and their conductance in units of the free-space admittance.
+    /// Edges with resistors or on lossy sheets, and their conductance in units of the free-space admittance.
     pub(super) resistors: Vec<(u32, f64)>,
     /// Number of cells.
     pub n_tets: usize,

@@ -1,7 +1,7 @@
 //! The field at chosen frequencies on a closed surface, and the power lost within it, gathered while the field runs.
 //!
 //! A running Fourier transform `X(f) = sum x(t) exp(-j 2 pi f t) dt` of the voltages and weak currents of the surface's
-//! edges (see [`Huygens`]) and of the voltages of the edges of lossy cells, sheets and resistors inside. Voltages and currents at edges are
+//! edges (see [`Huygens`]) and of the voltages of the edges of lossy cells, sheets and resistors. Voltages and currents at edges are
 //! taken at `(n + 1/2) dt`, with that time in the kernel. The pulse is band-limited, so only one of several steps counts,
 //! [`SAMPLES`] in a period of the highest frequency: what lies beyond the band is folded back from eleven times it.
 //!
@@ -51,7 +51,7 @@ impl SurfaceField {
     }
 }
 
-/// A cell, or resistor, that loses power: its edges among the recorded ones, and `G` by rows of the lower triangle, 1/ohm.
+/// A cell, or an edge of a sheet or with a resistor, that loses power: its edges among the recorded ones, and `G` by rows of the lower triangle, 1/ohm.
 #[derive(Clone, Debug)]
 struct LossyCell {
     edges: [Option<u32>; 6],

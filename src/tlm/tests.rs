@@ -9,7 +9,7 @@ use super::{Network, NetworkSettings, Pulse, Real, Run};
 use crate::geometry::{DQuat, DVec3, Region, RegionId, RegionRole, VertexId};
 use crate::task::Task;
 use crate::tet::{FaceGroup, FaceRole, SizingSettings, Surface, SurfaceFacet, TetMesh, fill};
-use crate::units::C0;
+use crate::units::{C0, ETA0};
 use nalgebra::{DMatrix, DVector, SMatrix};
 use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
@@ -49,7 +49,9 @@ impl Quads {
             vertices: self.vertices.iter().map(|p| turn * *p).collect(),
             facets: self.facets,
             regions: (0..=eps_r.len()).map(region).collect(),
-            groups: vec![FaceGroup { name: "walls".to_owned(), role: FaceRole::Conductor }],
+            groups: ["walls", "sheet"]
+                .map(|name| FaceGroup { name: name.to_owned(), role: FaceRole::Conductor })
+                .into(),
         };
         let filled = fill(&surface, &[], SizingSettings { h_max: h, grading: 0.4 }, &Task::default());
         let mut mesh = filled.expect("a simple surface").mesh;
@@ -60,6 +62,11 @@ impl Quads {
 
 /// The box from the origin to `size`, of layers along z of equal thickness, with conducting walls.
 fn layered_box(size: DVec3, eps_r: &[f64], h: f64) -> TetMesh {
+    divided_box(size, eps_r, h, None)
+}
+
+/// The same with the faces between the layers in a group.
+fn divided_box(size: DVec3, eps_r: &[f64], h: f64, divider: Option<usize>) -> TetMesh {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few quads")]
     let count = |length: f64| (length / h).round().max(1.0) as usize;
     let per_layer = count(size.z / eps_r.len() as f64);
@@ -84,7 +91,7 @@ fn layered_box(size: DVec3, eps_r: &[f64], h: f64) -> TetMesh {
                 } else if place == n[axis] {
                     quads.add(corners, [layer, 0], Some(0));
                 } else {
-                    quads.add(corners, [layer, layer + 1], None);
+                    quads.add(corners, [layer, layer + 1], divider);
                 }
             }
         }
@@ -92,7 +99,7 @@ fn layered_box(size: DVec3, eps_r: &[f64], h: f64) -> TetMesh {
     quads.fill(eps_r, h)
 }
 
-/// A lossless mesh with the places of its lanes.
+/// A closed mesh with the places of its lanes.
 struct Closed<'a> {
     mesh: &'a TetMesh,
     assembly: Assembly<'a>,
@@ -102,9 +109,13 @@ struct Closed<'a> {
 
 impl<'a> Closed<'a> {
     fn new(mesh: &'a TetMesh, edge_correction: bool) -> Self {
-        let assembly = Assembly::new(mesh, &Loads::default(), edge_correction, 1e9).expect("no port");
+        Self::loaded(mesh, edge_correction, Loads::default())
+    }
+
+    fn loaded(mesh: &'a TetMesh, edge_correction: bool, loads: Loads) -> Self {
+        let assembly = Assembly::new(mesh, &loads, edge_correction, 1e9).expect("no port");
         let slots = Slots::new(&assembly);
-        let settings = NetworkSettings { edge_correction, ..NetworkSettings::new(1e9) };
+        let settings = NetworkSettings { edge_correction, loads, ..NetworkSettings::new(1e9) };
         let network = Network::new(mesh, &settings, &Task::default()).expect("no port");
         Self { mesh, assembly, slots, network }
     }
@@ -394,4 +405,55 @@ fn a_closed_box_keeps_its_energy_over_a_million_steps() {
     run.advance(STEPS, &task).expect("not cancelled");
     let drift = energy(&closed, &mut run) / before - 1.0;
     assert!(drift.abs() < 1e-9, "{drift:e}");
+}
+
+/// Rate at which the mode of a box that a field begins with decays by a lossy sheet, 1/m.
+fn decay(mesh: &TetMesh, (name, ohm_per_square): (&str, f64), mode: impl Fn(DVec3) -> DVec3, wave_number: f64) -> f64 {
+    const PERIODS: usize = 10;
+    let sheets = vec![(name.to_owned(), ohm_per_square)];
+    let closed = Closed::loaded(mesh, false, Loads { sheets, ..Loads::default() });
+    let voltages = closed.along_edges(mode);
+    let mut run = closed.start(&voltages);
+    let step = 2.0 * closed.x();
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some hundred steps")]
+    let in_period = (TAU / wave_number / step).round() as usize;
+    let mut project = || {
+        run.advance(1, &Task::default()).expect("not cancelled");
+        run.voltages().iter().zip(&voltages).map(|(v, m)| v * m).sum::<f64>()
+    };
+    let mut last = project();
+    let mut energies = Vec::new();
+    for _ in 0..PERIODS {
+        let mut energy = 0.0;
+        for _ in 0..in_period {
+            let now = project();
+            // The start is rough: a part of it goes on to alternate from step to step.
+            energy += (now + last).powi(2);
+            last = now;
+        }
+        energies.push(energy);
+    }
+    0.5 * (energies[0] / energies[PERIODS - 1]).ln() / ((PERIODS - 1) * in_period) as f64 / step
+}
+
+/// Loss `R |K|^2 / 2` on walls, or on a sheet in the middle below which the field rings alone, over the energy.
+#[test]
+fn lossy_sheets_damp_as_perturbation_says() {
+    const OHM_PER_SQUARE: f64 = 0.01 * ETA0;
+    let k = DVec3::new(PI, PI, 0.0) / CAVITY;
+    let (a, b, h) = (CAVITY.x, CAVITY.y, CAVITY.z);
+    let sides = (k.x.powi(2) * b + k.y.powi(2) * a) * h / k.length_squared();
+    let mesh = layered_box(CAVITY, &[1.0], 0.15);
+    let walls = decay(&mesh, ("walls", OHM_PER_SQUARE), |p| cavity_mode(0, p), k.length());
+    let mut rates = vec![(walls, 2.0 * OHM_PER_SQUARE / ETA0 * (a * b / 2.0 + sides) / (a * b * h))];
+    // Other materials, so that the halves do not ring together.
+    for eps_r in [[1.0, 2.2], [2.2, 1.0]] {
+        let mesh = divided_box(CAVITY, &eps_r, 0.15, Some(1));
+        let lower = |p: DVec3| if p.z < h / 2.0 { cavity_mode(0, p) } else { DVec3::ZERO };
+        let found = decay(&mesh, ("sheet", OHM_PER_SQUARE), lower, k.length() / eps_r[0].sqrt());
+        rates.push((found, OHM_PER_SQUARE / ETA0 / h));
+    }
+    for (found, expected) in rates {
+        assert!((found / expected - 1.0).abs() < 0.1, "decays by {found} per m, expected {expected}");
+    }
 }

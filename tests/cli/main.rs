@@ -56,6 +56,32 @@ fn new_writes_each_shape_and_info_reads_it_back() {
 }
 
 #[test]
+fn new_takes_materials_by_name_or_number_and_resistors() {
+    let bench = Bench::new();
+    let help = bench.ok("new --help");
+    assert!(help.contains("RT/duroid 5880") && help.contains("Copper-plated nylon ripstop"), "{help}");
+    bench.ok(
+        "new a.json --substrate felt --patch-metal ripstop --ground-metal 0.1 --resistor 3,2,50 --resistor -4,3,0.01",
+    );
+    let info = bench.ok("info a.json");
+    for said in [
+        "Felt, eps_r 1.38, tan delta 0.023",
+        "Copper-plated nylon ripstop, 0.04 ohm per square",
+        "ground metal  0.1 ohm per square",
+        "0.01 ohm at (-4, 3) mm",
+    ] {
+        assert!(info.contains(said), "{said}: {info}");
+    }
+    bench.ok("new b.json --eps-r 4.4 --tan-delta 0.02");
+    assert!(bench.ok("info b.json").contains("FR-4, eps_r 4.4"), "values of the library have their name");
+    bench.fails("new c.json --substrate duroid", 1, "\"duroid\" names no substrate, or several");
+    bench.fails("new c.json --patch-metal wool", 1, "\"wool\" names no metal, or several");
+    bench.fails("new c.json --patch-metal -1", 1, "antenna.patch_metal is -1, but must lie between");
+    bench.fails("new c.json --resistor 9,2,50", 1, "antenna.resistors[0] (resistor 1) at (9.0000, 2.0000) mm");
+    bench.fails("new c.json --resistor 9,2", 1, "--resistor takes three numbers");
+}
+
+#[test]
 fn new_sizes_the_patch_for_a_frequency() {
     let bench = Bench::new();
     bench.ok("new a.json --freq 10 --height 1.588 --eps-r 2.2");

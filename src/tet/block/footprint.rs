@@ -35,6 +35,8 @@ pub(super) struct Footprint {
     pub(super) points: Vec<DVec2>,
     pub(super) triangles: Vec<[usize; 3]>,
     pub(super) covers: Vec<Cover>,
+    /// The point of each resistor.
+    pub(super) posts: Vec<usize>,
 }
 
 /// Triangulates the outlines of valid parameters.
@@ -59,7 +61,7 @@ pub(super) fn triangulate(params: &PatchParams, settings: &BlockSettings) -> Res
     let triangles = print.delaunay()?;
     let points = print.points;
     let covers = triangles.iter().map(|t| cover(&outlines, t.map(|v| points[v]))).collect();
-    Ok(Footprint { points, triangles, covers })
+    Ok(Footprint { points, triangles, covers, posts: outlines.posts })
 }
 
 /// The parts over a triangle, which lies on one side of every outline.

@@ -4,8 +4,10 @@
 //! tetrahedra of all parts, each with its region, and the marked faces of conductors and of the port; [`Block::skin`]
 //! is the surface that the air around it meets.
 //!
-//! 1. All outlines (ground, patch, pin, outer conductor) are cut where they cross, divided, and triangulated together.
-//! 2. The triangles are extruded through the layers: the coaxial line, the substrate, and the metal if it is solid.
+//! 1. All outlines (ground, patch, pin, outer conductor) are cut where they cross, divided, and triangulated together,
+//!    with a point for each resistor.
+//! 2. The triangles are extruded through the layers: the coaxial line, the substrate, and the metal if it is solid; a
+//!    resistor's point becomes a chain of edges through the substrate.
 //! 3. The map carries the vertices.
 //! 4. Each prism becomes three tetrahedra whose diagonals agree with its neighbors', chosen for their angles; one that
 //!    the map turns over is an error with its place.
@@ -81,6 +83,8 @@ pub struct Block {
     pub faces: Vec<MarkedFace>,
     /// Regions: outside, air, substrate, coax, pin, and with solid metal patch and ground; a region may be empty.
     pub regions: Vec<Region>,
+    /// For each resistor a chain of edges through the substrate: its vertices from the ground up to the patch.
+    pub posts: Vec<Vec<VertexId>>,
     /// Groups: `pec_patch`, `pec_ground`, `pec_feed`, `port1`, and `outer`, which has no face here.
     pub groups: Vec<FaceGroup>,
 }
@@ -167,6 +171,7 @@ pub fn build<E: From<BlockError>>(
         vertices,
         faces: marks::mark(&split, &prisms.plane, &print, &layers),
         flat: prisms.flat,
+        posts: prisms.posts,
         tets: split.tets,
         regions: regions(params, settings.metal),
         groups: marks::groups(),

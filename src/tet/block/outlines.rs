@@ -27,6 +27,8 @@ pub(super) struct Outlines {
     pub(super) segments: Vec<[usize; 2]>,
     /// Corners of the polygons of the circles, counter-clockwise.
     pub(super) polygons: Vec<Vec<DVec2>>,
+    /// The points that stand alone, one for each resistor.
+    pub(super) posts: Vec<usize>,
     /// Half the extents of the patch, m.
     pub(super) patch: DVec2,
     /// Half the extents of the ground, m.
@@ -55,6 +57,7 @@ impl Outlines {
         }
         outlines.add_rectangle(patch, sizing, &cuts);
         outlines.add_rectangle(ground, sizing, &[]);
+        outlines.posts = params.resistors.iter().map(|resistor| outlines.point(resistor.at)).collect();
         Ok(outlines)
     }
 

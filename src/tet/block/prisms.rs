@@ -30,6 +30,8 @@ pub(super) struct Prisms {
     pub(super) plane: Vec<usize>,
     /// By layer.
     layers: Vec<Vec<Prism>>,
+    /// For each resistor the corners above its place, from the ground up to the patch.
+    pub(super) posts: Vec<Vec<VertexId>>,
 }
 
 /// The block over one triangle in one layer.
@@ -71,6 +73,8 @@ impl Prisms {
             }
             prisms.layers.push(in_layer);
         }
+        let column = |post: &usize| (layers.ground_plane..=layers.patch_plane).map(|z| columns[&(*post, z)]).collect();
+        prisms.posts = print.posts.iter().map(column).collect();
         prisms
     }
 

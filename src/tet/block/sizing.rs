@@ -1,7 +1,8 @@
 //! How long the edges of the footprint should be at a place.
 //!
 //! The rim of the patch rules the accuracy of the field, so lengths start there, and at the segments of the feed's
-//! circles, and grow linearly to the length wanted inside the block.
+//! circles, and grow linearly to the length wanted inside the block; so they do from a resistor that stands close to
+//! something else.
 
 use super::{BlockError, BlockSettings, Metal};
 use crate::antenna::PatchParams;
@@ -55,6 +56,20 @@ pub(super) struct Sizing {
     sheath: f64,
     /// The pin's and the outer conductor's circle; none without a feed.
     pub(super) circles: Vec<Circle>,
+    /// Places of the resistors, and the length wanted there.
+    posts: Vec<(DVec2, f64)>,
+}
+
+/// Places of the resistors, and the distance of each to whatever is nearest.
+fn posts(params: &PatchParams) -> Vec<(DVec2, f64)> {
+    let room = |k: usize| {
+        let at = params.resistors[k].at;
+        let others = params.resistors.iter().enumerate().filter(|(other, _)| *other != k);
+        let to_others = others.map(|(_, other)| at.distance(other.at));
+        let to_feed = at.distance(params.feed()) - params.coax_radius;
+        (at, to_others.fold(to_feed.min(params.inside_patch(at)), f64::min))
+    };
+    (0..params.resistors.len()).map(room).collect()
 }
 
 impl Sizing {
@@ -81,6 +96,7 @@ impl Sizing {
                 Metal::Solid => (SHEATH * params.ground_thickness).max(SHEATH_LEAST * sheath.segment()),
             },
             circles: if settings.coax { vec![pin, sheath] } else { Vec::new() },
+            posts: posts(params),
         };
         let n_points = sizing.n_points(params.ground_width * params.ground_length);
         if n_points > MAX_POINTS {
@@ -99,7 +115,8 @@ impl Sizing {
             let from_circle = c.segment() + SLOPE * away.abs();
             if away <= 0.0 { from_circle.min(self.sheath) } else { from_circle.min(self.sheath + SLOPE * away) }
         });
-        from_circles.fold(self.inner.min(from_rim), f64::min)
+        let from_posts = self.posts.iter().map(|(at, room)| room + SLOPE * p.distance(*at));
+        from_circles.chain(from_posts).fold(self.inner.min(from_rim), f64::min)
     }
 
     /// About the number of points of a footprint of some area, m².
