@@ -3,6 +3,7 @@
 use super::command::{Command, Facts};
 use super::dialogs::{About, Dialog, Next};
 use super::disk::Disk;
+use super::edit_ui::Outline;
 use super::export_dialog::ExportDialog;
 use super::frame::set_scale;
 use super::mesh_export::MeshExport;
@@ -118,10 +119,16 @@ impl App {
             shows_cage: self.state.shows_cage,
             sees_through: self.state.sees_through,
             shows_log: self.state.shows_log,
+            selects_by_box: self.state.editing.outline == Some(Outline::Box),
+            selects_by_lasso: self.state.editing.outline == Some(Outline::Lasso),
+            snaps: self.state.editing.snaps,
+            is_proportional: self.state.editing.is_proportional,
+            mirrors: self.state.editing.mirrors,
+            can_play: self.session.can_play(),
+            is_playing: self.session.play().is_on(),
             shows_history: self.state.tab == Tab::History && self.state.shows_left,
             shows_left: self.state.shows_left,
             shows_right: self.state.shows_right,
-            selects_by_box: self.state.selects_by_box,
             theme: Some(self.state.theme),
         }
     }
@@ -143,6 +150,7 @@ impl App {
                 self.edit("presets", Edit::InsertPreset { index, entry });
             }
             Action::Run(command) => self.run(ctx, command),
+            Action::Show(play) => self.session.show(play),
             Action::StopWork => self.session.stop_work(),
             Action::CancelMesh => self.mesh.cancel(),
             Action::CancelSolve => self.solve.cancel(),
@@ -211,17 +219,6 @@ impl App {
             }
             Command::Undo => self.session.undo(),
             Command::Redo => self.session.redo(),
-            Command::SelectAll => {
-                let count = self.session.pose().map_or(0, |p| p.cage.n_handles());
-                state.selection = (0..u32::try_from(count).unwrap_or(u32::MAX)).collect();
-            }
-            Command::SelectNone => state.selection.clear(),
-            Command::BoxSelect => state.selects_by_box = !state.selects_by_box,
-            Command::ResetSelected => {
-                let zero = state.selection.iter().map(|&v| (v, [0.0; 3])).collect();
-                self.edit("hand edits", Edit::MoveVertices(zero));
-            }
-            Command::ResetAll => self.edit("hand edits", Edit::ClearHandEdits),
             Command::Compensate => self.compensate(CompensationMode::Isometric),
             Command::CompensateNot => self.compensate(CompensationMode::None),
             Command::Mesh => {
@@ -255,6 +252,7 @@ impl App {
             Command::SavePlot => self.ask_plot(None),
             Command::Palette => self.dialog = Dialog::Palette(Palette::default()),
             Command::Keys => self.dialog = Dialog::Keys,
+            _ if self.run_edit(command) => {}
             _ => self.run_view(ctx, command),
         }
     }
@@ -264,6 +262,18 @@ impl App {
         self.solve.clear();
         self.mesh.clear();
         self.state.forget_mesh();
+    }
+
+    /// Shows a little more of the deformation while it is played.
+    fn go_on_playing(&mut self, ctx: &egui::Context) {
+        let play = self.session.play();
+        if play.is_running {
+            // A frame that took long, as the first one does, is no reason to jump.
+            let seconds = ctx.input(|i| i.stable_dt).min(0.1);
+            self.session.show(play.after(f64::from(seconds)));
+            ctx.request_repaint();
+        }
+        (self.state.play, self.state.can_play) = (self.session.play(), self.session.can_play());
     }
 
     /// Takes what the meshing thread has to say; the first mesh is shown at once.
@@ -355,6 +365,7 @@ impl eframe::App for App {
         }
         self.sync_mesh();
         self.sync_solve();
+        self.go_on_playing(&ctx);
         let facts = self.facts();
         let mut out = Outbox::default();
         let is_modal = !matches!(self.dialog, Dialog::None);

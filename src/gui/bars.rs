@@ -3,8 +3,9 @@
 use super::command::{Command, Facts};
 use super::notices::recent_item;
 use super::outbox::{Action, Outbox};
+use super::selecting::Pick;
 use crate::project::Example;
-use crate::render::StandardView;
+use crate::render::{Operator, StandardView};
 use Command as C;
 use egui::{ThemePreference, Ui};
 use std::path::PathBuf;
@@ -13,7 +14,7 @@ use std::path::PathBuf;
 pub(super) type Menu = (&'static str, &'static [&'static [Command]]);
 
 /// The menus from left to right. Every command stands in exactly one of them.
-pub(super) const MENUS: [Menu; 6] = [
+pub(super) const MENUS: [Menu; 8] = [
     (
         "File",
         &[
@@ -22,13 +23,29 @@ pub(super) const MENUS: [Menu; 6] = [
             &[C::Quit],
         ],
     ),
+    ("Edit", &[&[C::Undo, C::Redo, C::ShowHistory], &[C::Palette]]),
     (
-        "Edit",
+        "Select",
         &[
-            &[C::Undo, C::Redo, C::ShowHistory],
-            &[C::SelectAll, C::SelectNone, C::BoxSelect],
+            &[C::SelectAll, C::SelectNone, C::Select(Pick::Inverse)],
+            &[C::BoxSelect, C::LassoSelect],
+            &[
+                C::Select(Pick::Station),
+                C::Select(Pick::Row),
+                C::Select(Pick::Column),
+                C::Select(Pick::Top),
+                C::Select(Pick::Bottom),
+            ],
+            &[C::Select(Pick::More), C::Select(Pick::Less)],
+        ],
+    ),
+    (
+        "Cage",
+        &[
+            &[C::Operate(Operator::Move), C::Operate(Operator::Rotate), C::Operate(Operator::Scale)],
+            &[C::Proportional, C::Snap, C::Mirror(0), C::Mirror(1)],
             &[C::ResetSelected, C::ResetAll],
-            &[C::Palette],
+            &[C::Play],
         ],
     ),
     ("Antenna", &[&[C::Compensate, C::CompensateNot], &[C::Mesh, C::Solve]]),

@@ -312,13 +312,19 @@ fn keys(ui: &mut Ui) -> bool {
     let mouse = [
         ("Drag a cage vertex", "Move it, or all selected ones, in the plane of the screen"),
         ("Drag an arrow", "Move the selection along an axis"),
-        ("X, Y, Z while dragging", "Bind the motion to an axis; with Shift to the plane across it"),
-        ("Esc while dragging", "Put everything back"),
         ("Click, Shift+click", "Select a vertex; add or remove one"),
-        ("Ctrl+drag (Cmd on a Mac)", "Select by a box"),
+        ("Ctrl+drag (Cmd on a Mac)", "Select by a lasso; Shift adds, Alt takes away"),
         ("Left drag on empty ground", "Turn the view"),
         ("Middle, right or Shift+drag", "Slide the view"),
         ("Wheel, pinch", "Zoom to the pointer"),
+        ("While vertices move:", ""),
+        ("X, Y, Z", "Bind the motion to an axis; with Shift to the plane across it; again: free"),
+        ("Digits . -", "Move by exactly so many mm, degrees or times; Tab: the next axis"),
+        ("=", "The number is where the vertex is to be, not how far it goes"),
+        ("Ctrl, Shift", "Whole steps (or not, where they are on); a tenth of the speed"),
+        ("O, wheel, Page up and down", "Let near vertices follow; their radius"),
+        ("G, R, S", "Go on moving, turning or scaling from the same beginning"),
+        ("Enter or click; Esc or right click", "Apply; put everything back"),
     ];
     egui::ScrollArea::vertical().max_height(460.0).show(ui, |ui| {
         egui::Grid::new("keys").num_columns(2).striped(true).show(ui, |ui| {

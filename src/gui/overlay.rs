@@ -4,8 +4,6 @@ use super::mesh_scene::{ANGLE_RANGE, Look};
 use super::session::Pose;
 use super::theme::Tokens;
 use super::ui_state::{MeshPaint, UiState};
-use super::viewport::Lock;
-use crate::geometry::DVec3;
 use crate::render::pick::surface_at;
 use crate::render::{ColorMap, Projection, StandardView, Surface, Vec2, Vec3, View, colormap, round_length};
 use crate::units::to_mm;
@@ -208,38 +206,19 @@ pub(super) fn legend<'a>(
     }
 }
 
-/// The box that is being drawn.
-pub(super) fn selection_box(ui: &Ui, from: Pos2, to: Pos2) {
-    let tokens = Tokens::here(ui);
-    let area = Rect::from_two_pos(from, to);
-    let fill = tokens.accent.gamma_multiply(0.15);
-    ui.painter().rect(area, 0.0, fill, Stroke::new(1.0, tokens.accent), StrokeKind::Inside);
-}
-
-/// How far the selection was moved, and the keys that bind the motion.
-pub(super) fn move_hint(ui: &Ui, rect: Rect, delta: DVec3, lock: Option<Lock>) {
-    let bound = match lock {
-        None => String::new(),
-        Some(Lock { axis, across: false }) => format!("   along {}", ["x", "y", "z"][axis]),
-        Some(Lock { axis, across: true }) => format!("   in the plane {}", ["y z", "x z", "x y"][axis]),
-    };
-    let DVec3 { x, y, z } = delta;
-    let keys = "X, Y, Z: along an axis (with Shift: in a plane)   Esc: cancel";
-    hint(ui, rect, &format!("Moved by {x:+.3}, {y:+.3}, {z:+.3} mm{bound}   {keys}"));
-}
-
 /// Number and place of the vertex under the pointer.
 pub(super) fn vertex_hint(ui: &Ui, rect: Rect, vertex: u32, pose: &Pose) {
     if let Some(at) = pose.vertices.get(vertex as usize) {
         let [x, y, z] = at.to_array().map(to_mm);
-        hint(ui, rect, &format!("Cage vertex {vertex} at {x:.3}, {y:.3}, {z:.3} mm: drag to move, Shift adds"));
+        hint(ui, rect, &format!("Cage vertex {vertex} at {x:.3}, {y:.3}, {z:.3} mm: drag or G moves, Shift adds"));
     }
 }
 
-/// One line at the bottom of the view, above the scale bar.
+/// A few words at the bottom of the view, above the scale bar.
 pub(super) fn hint(ui: &Ui, rect: Rect, text: &str) {
     let tokens = Tokens::here(ui);
-    let galley = ui.painter().layout_no_wrap(text.to_owned(), font(), tokens.text);
+    let width = (rect.width() - 2.0 * MARGIN - 16.0).max(60.0);
+    let galley = ui.painter().layout(text.to_owned(), font(), tokens.text, width);
     let at = pos2(rect.center().x - galley.size().x / 2.0, rect.bottom() - HINT_HEIGHT - galley.size().y);
     let back = Rect::from_min_size(at, galley.size()).expand2(vec2(8.0, 4.0));
     ui.painter().rect_filled(back, 4.0, tokens.panel);

@@ -23,6 +23,8 @@ fn everything() -> Facts {
         has_results: true,
         has_pattern: true,
         compensates: true,
+        shows_cage: true,
+        can_play: true,
         ..Facts::default()
     }
 }
@@ -61,7 +63,7 @@ fn the_palette_runs_what_is_chosen_with_the_keys() {
     settle(&mut window);
     assert!(window.query_by_label("Find a command").is_none(), "closed");
     assert!(!window.state().state.selection.is_empty(), "all vertices are selected");
-    assert_eq!(window.state().state.recent_commands, ["Edit: Select all vertices"], "remembered");
+    assert_eq!(window.state().state.recent_commands, ["Select: Select all vertices"], "remembered");
     open_palette(&mut window, "redo");
     window.key_press(Key::Enter);
     lay_out(&mut window);

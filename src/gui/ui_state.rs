@@ -1,5 +1,7 @@
 //! What the user looks at and has selected: never part of a project, never undone, kept between runs.
 
+use super::edit_ui::EditUi;
+use super::play::Play;
 use crate::pipeline::{Density, Shape};
 use crate::render::{Camera, Projection, Vec3};
 use crate::tet::Metal;
@@ -268,12 +270,16 @@ pub(super) struct UiState {
     camera_kept: Option<SavedCamera>,
     pub(super) mesh: MeshUi,
     pub(super) solve: SolveUi,
+    pub(super) editing: EditUi,
+    /// How much of the deformation is shown.
+    #[serde(skip)]
+    pub(super) play: Play,
+    /// Whether a part of it can be shown.
+    #[serde(skip)]
+    pub(super) can_play: bool,
     /// Selected cage vertices.
     #[serde(skip)]
     pub(super) selection: BTreeSet<u32>,
-    /// Whether the next drag on empty ground draws a box.
-    #[serde(skip)]
-    pub(super) selects_by_box: bool,
     #[serde(skip)]
     pub(super) camera: Camera,
     /// Asks the viewport to show all in the next frame.
@@ -309,8 +315,10 @@ impl Default for UiState {
             camera_kept: None,
             mesh: MeshUi::default(),
             solve: SolveUi::default(),
+            editing: EditUi::default(),
+            play: Play::default(),
+            can_play: false,
             selection: BTreeSet::new(),
-            selects_by_box: false,
             camera: Camera::default(),
             fit: true,
             refused: None,
@@ -358,9 +366,10 @@ impl UiState {
         });
     }
 
-    /// Puts the camera where it was in the last run, if that is a possible place.
+    /// Puts the camera where it was in the last run, if that is a possible place, and corrects impossible numbers.
     pub(super) fn restore_camera(&mut self) {
         self.mesh.axis = self.mesh.axis.min(2);
+        self.editing.restore();
         let Some(kept) = self.camera_kept else { return };
         let numbers = [kept.yaw, kept.pitch, kept.distance];
         if numbers.iter().chain(&kept.target).all(|v| v.is_finite()) && kept.distance > 0.0 {

@@ -1,25 +1,30 @@
 //! The 3-D view: camera, picking and dragging cage vertices.
 //!
-//! What a drag does is decided where the button went down. A vertex or an arrow of the gizmo moves the selection, one
-//! undo step per drag, live; empty ground turns the view (left), slides it (middle, right or Shift) or draws a
-//! selection box (Ctrl, or after B). Places are points from the top left of the view.
+//! What a drag does is decided where the button went down. A vertex or an arrow of the gizmo moves the selection
+//! ([`super::operating`]), one undo step per drag, live; empty ground turns the view (left), slides it (middle, right or
+//! Shift) or draws an outline around vertices (Ctrl a lasso; after a command a box or a lasso). Operators that a command
+//! began are driven by the pointer until a click. Places are points from the top left of the view.
 
+use super::edit_overlay;
+use super::edit_ui::Outline;
 use super::mesh_scene::MeshScene;
 use super::mesh_session::ShownMesh;
+use super::operating::{Operating, Outcome};
 use super::outbox::{Action, Outbox};
 use super::overlay;
 use super::paint::ScenePaint;
 use super::pattern_scene::{self, PatternScene};
+use super::play::Play;
 use super::scene::{Hot, SceneBuilder, gizmo, to_picture};
-use super::session::{Pose, Session, move_edit};
+use super::selecting::Drawn;
+use super::session::{Pose, Session};
 use super::solve_session::SolveSession;
 use super::theme::Tokens;
 use super::ui_state::UiState;
-use crate::geometry::DVec3;
-use crate::render::drag::{Motion, displacement};
-use crate::render::pick::{gizmo_at, handle_at, handles_in};
-use crate::render::{Gizmo, GizmoPart, Scene, Vec2, Vec3, View};
-use egui::{CursorIcon, Key, Modifiers, PointerButton, Pos2, Rect, Response, Role, Sense, Ui, WidgetInfo};
+use crate::render::pick::{gizmo_at, handle_at};
+use crate::render::{Bound, Gizmo, GizmoPart, Operator, Scene, Vec2, Vec3, View};
+use egui::{Area, CursorIcon, EventFilter, Id, Key, Modifiers, Order, PointerButton, Pos2, Rect, Response, Role};
+use egui::{Sense, Ui, WidgetInfo};
 
 /// How far from a vertex a press still grabs it, points: a little more than its disc.
 const GRAB_RADIUS: f32 = 9.0;
@@ -29,53 +34,24 @@ const FIT_ROOM: f32 = 1.12;
 const ZOOM_PER_POINT: f32 = 0.002;
 
 /// What the pointer is doing.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 enum Drag {
     #[default]
     Nothing,
     Orbit,
     Pan,
-    Box {
-        from: Vec2,
-    },
-    Move(Move),
-    /// Called off; waits for the button to come up.
+    Outline(Drawn),
+    Operate(Box<Operating>),
+    /// Called off or applied; waits for the button to come up.
     Over,
-}
-
-/// Vertices being moved.
-#[derive(Clone, Debug)]
-struct Move {
-    /// Where the motion is measured, mm, and the press.
-    grabbed: Vec3,
-    from: Vec2,
-    /// What the press says, and what a key says instead.
-    free: Motion,
-    lock: Option<Lock>,
-    /// Offsets of the moved vertices at the start, mm.
-    start: Vec<(u32, [f64; 3])>,
-    delta: DVec3,
-}
-
-/// Axis or plane that a key has bound the motion to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Lock {
-    pub(super) axis: usize,
-    /// The plane across the axis instead of the axis.
-    pub(super) across: bool,
-}
-
-impl Lock {
-    fn motion(self) -> Motion {
-        let axis = Vec3::AXES[self.axis];
-        if self.across { Motion::Plane(axis) } else { Motion::Axis(axis) }
-    }
 }
 
 /// What the view remembers between frames.
 #[derive(Debug, Default)]
 pub(super) struct Viewport {
     drag: Drag,
+    /// The operator to begin with.
+    wanted: Option<Operator>,
     hot: Hot,
     builder: SceneBuilder,
     mesh: MeshScene,
@@ -113,6 +89,25 @@ impl Frame<'_> {
         gizmo_at(view, gizmo, at).map(|part| (gizmo.center, part))
     }
 
+    /// Begins an operator on the selection; the side of the vertex `lead` leads where edits are mirrored.
+    fn operate(
+        &self,
+        operator: Operator,
+        lead: Option<u32>,
+        at: Vec2,
+        state: &UiState,
+        out: &mut Outbox,
+    ) -> Option<Operating> {
+        if state.play.is_on() {
+            // Vertices are moved from where they really are.
+            out.push(Action::Show(Play::default()));
+            return None;
+        }
+        let pose = self.pose.filter(|_| state.shows_cage)?;
+        let mirror = lead.map_or(state.editing.mirror(), |v| state.editing.mirror().led_by(&pose.cage, v));
+        Operating::begin(operator, (pose, self.session.project()), &state.selection, mirror, at, out)
+    }
+
     fn local(&self, at: Pos2) -> Vec2 {
         let v = at - self.rect.min;
         Vec2::new(v.x, v.y)
@@ -144,7 +139,12 @@ impl Viewport {
         if std::mem::take(&mut state.fit) {
             self.fit(ui, &frame, state);
         }
+        if matches!(self.drag, Drag::Operate(_)) && !session.in_gesture() {
+            // Something else ended it: what it began from is gone.
+            self.drag = Drag::Over;
+        }
         self.hover(ui, &response, &frame, state);
+        self.start_wanted(ui, &response, &frame, state, out);
         self.start(ui, &response, &frame, state, out);
         self.go_on(ui, &response, &frame, state, out);
         self.click(ui, &response, &frame, state);
@@ -153,7 +153,12 @@ impl Viewport {
         self.overlay(ui, &response, &frame, state, &scene);
     }
 
-    /// True while the pointer holds something.
+    /// Begins an operator on the selection with the next frame.
+    pub(super) fn begin(&mut self, operator: Operator) {
+        self.wanted = Some(operator);
+    }
+
+    /// True while the pointer holds something or an operator runs: keys belong to that.
     pub(super) fn is_dragging(&self) -> bool {
         !matches!(self.drag, Drag::Nothing)
     }
@@ -204,7 +209,7 @@ impl Viewport {
         }
         if self.hot.gizmo.is_some() || self.hot.vertex.is_some() {
             ui.ctx().set_cursor_icon(CursorIcon::Grab);
-        } else if state.selects_by_box {
+        } else if state.editing.outline.is_some() {
             ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
         }
     }
@@ -222,15 +227,19 @@ impl Viewport {
         }
         let part = frame.gizmo_at(&view, from);
         let vertex = handle_at(&view, frame.handles, from, GRAB_RADIUS);
-        self.drag = if state.selects_by_box || modifiers.command {
-            state.selects_by_box = false;
-            Drag::Box { from }
+        let outline = state.editing.outline.take().or(modifiers.command.then_some(Outline::Lasso));
+        let operate = |grabbed: Vec3, lead: Option<u32>, bound: Bound, state: &UiState, out: &mut Outbox| {
+            let operating = frame.operate(Operator::Move, lead, from, state, out);
+            operating.map_or(Drag::Over, |o| Drag::Operate(Box::new(o.held(grabbed, bound))))
+        };
+        self.drag = if let Some(outline) = outline {
+            Drag::Outline(Drawn::new(outline, from))
         } else if let Some((center, part)) = part {
             self.hot.gizmo = Some(part);
-            begin_move(frame, state, center, from, part.axis().map_or(Motion::Screen, Motion::Axis), out)
-        } else if let Some(vertex) = vertex {
-            let grabbed = frame.handles[vertex];
-            let vertex = u32::try_from(vertex).unwrap_or(u32::MAX);
+            let axis = GizmoPart::ARROWS.iter().position(|arrow| *arrow == part);
+            operate(center, None, axis.map_or(Bound::Free, Bound::Axis), state, out)
+        } else if let Some(index) = vertex {
+            let vertex = u32::try_from(index).unwrap_or(u32::MAX);
             if !state.selection.contains(&vertex) {
                 if !modifiers.shift {
                     state.selection.clear();
@@ -238,7 +247,7 @@ impl Viewport {
                 state.selection.insert(vertex);
             }
             self.hot.vertex = Some(vertex);
-            begin_move(frame, state, grabbed, from, Motion::Screen, out)
+            operate(frame.handles[index], Some(vertex), Bound::Free, state, out)
         } else if modifiers.shift {
             Drag::Pan
         } else {
@@ -246,7 +255,20 @@ impl Viewport {
         };
     }
 
-    fn go_on(&mut self, ui: &Ui, response: &Response, frame: &Frame<'_>, state: &mut UiState, out: &mut Outbox) {
+    /// Begins the operator that a command asked for; the pointer then drives it without a button.
+    fn start_wanted(&mut self, ui: &Ui, response: &Response, frame: &Frame<'_>, state: &UiState, out: &mut Outbox) {
+        let Some(operator) = self.wanted.take().filter(|_| !self.is_dragging()) else { return };
+        // It begins with the next frame, when the whole deformation is shown again.
+        self.wanted = Some(operator).filter(|_| state.play.is_on());
+        let at = ui.input(|i| i.pointer.latest_pos()).map_or(frame.local(frame.rect.center()), |p| frame.local(p));
+        if let Some(operating) = frame.operate(operator, None, at, state, out) {
+            self.drag = Drag::Operate(Box::new(operating));
+            self.hot = Hot::default();
+            response.request_focus();
+        }
+    }
+
+    fn go_on(&mut self, ui: &mut Ui, response: &Response, frame: &Frame<'_>, state: &mut UiState, out: &mut Outbox) {
         let pointer = response.interact_pointer_pos().map(|p| frame.local(p));
         let mut view = frame.view(ui, state);
         match &mut self.drag {
@@ -257,37 +279,36 @@ impl Viewport {
                 view.pan(to_render(response.drag_delta()));
                 state.camera = view.camera;
             }
-            Drag::Box { from } => {
+            Drag::Outline(drawn) => {
                 if ui.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape)) {
                     self.drag = Drag::Over;
-                } else if let Some(to) = pointer.filter(|_| response.drag_stopped()) {
-                    let found = handles_in(&view, frame.handles, *from, to);
-                    if !ui.input(|i| i.modifiers.shift) {
-                        state.selection.clear();
+                } else if let Some(to) = pointer {
+                    drawn.extend(to);
+                    if response.drag_stopped() {
+                        drawn.select(&view, frame.handles, to, ui.input(|i| i.modifiers), state);
                     }
-                    state.selection.extend(found.into_iter().filter_map(|v| u32::try_from(v).ok()));
                 }
             }
-            Drag::Move(moving) => {
-                ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
-                if ui.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape)) {
-                    out.push(Action::Cancel);
-                    self.drag = Drag::Over;
-                } else {
-                    moving.go_on(ui, &view, pointer, out);
+            Drag::Operate(operating) => {
+                ui.ctx().set_cursor_icon(if operating.is_held { CursorIcon::Grabbing } else { CursorIcon::Move });
+                if !operating.is_held {
+                    hold_input(ui, response);
                 }
+                let pointer = ui.input(|i| i.pointer.latest_pos()).map(|p| frame.local(p));
+                if operating.go_on(ui, &view, pointer, &mut state.editing, out) == Outcome::Running {
+                    return;
+                }
+                self.drag = Drag::Over;
             }
         }
-        if response.drag_stopped() || !ui.input(|i| i.pointer.any_down()) {
-            if matches!(self.drag, Drag::Move(_)) {
-                out.push(Action::End);
-            }
+        if !ui.input(|i| i.pointer.any_down()) {
             self.drag = Drag::Nothing;
         }
     }
 
     fn click(&self, ui: &Ui, response: &Response, frame: &Frame<'_>, state: &mut UiState) {
-        let Some(at) = response.interact_pointer_pos().filter(|_| response.clicked()) else { return };
+        let at = response.interact_pointer_pos().filter(|_| response.clicked() && !self.is_dragging());
+        let Some(at) = at else { return };
         response.request_focus();
         let (view, at, shift) = (frame.view(ui, state), frame.local(at), ui.input(|i| i.modifiers.shift));
         let on_gizmo = frame.gizmo_at(&view, at).is_some_and(|(_, part)| part != GizmoPart::Center);
@@ -304,6 +325,9 @@ impl Viewport {
 
     fn zoom(&self, ui: &Ui, response: &Response, frame: &Frame<'_>, state: &mut UiState) {
         let Some(at) = response.hover_pos().filter(|_| response.contains_pointer()) else { return };
+        if matches!(self.drag, Drag::Operate(_)) && state.editing.is_proportional {
+            return;
+        }
         let (scroll, pinch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
         let factor = pinch * (ZOOM_PER_POINT * scroll).exp();
         let mut view = frame.view(ui, state);
@@ -332,15 +356,20 @@ impl Viewport {
             let is_stale = mesh.is_stale(frame.session.project());
             overlay::mesh(ui, frame.rect, self.mesh.looks(), state.mesh.paint, is_stale);
         }
+        if let Some(pose) = frame.pose.filter(|_| state.shows_cage) {
+            edit_overlay::mirrors(ui, frame.rect, &view, (pose, frame.handles), state);
+        }
         match &self.drag {
-            Drag::Box { from } => {
+            Drag::Outline(drawn) => {
                 if let Some(to) = response.interact_pointer_pos() {
-                    overlay::selection_box(ui, frame.rect.min + egui::vec2(from.x, from.y), to);
+                    drawn.draw(ui, frame.rect, frame.local(to));
                 }
             }
-            Drag::Move(moving) => overlay::move_hint(ui, frame.rect, moving.delta, moving.lock),
-            _ if state.selects_by_box => {
-                overlay::hint(ui, frame.rect, "Drag a box around vertices; Shift adds, B ends")
+            Drag::Operate(operating) => edit_overlay::operator(ui, frame.rect, &view, operating, &state.editing),
+            Drag::Nothing if state.editing.outline.is_some() => {
+                if let Some(outline) = state.editing.outline {
+                    edit_overlay::outline_hint(ui, frame.rect, outline);
+                }
             }
             Drag::Nothing => {
                 let pointer = response.hover_pos().filter(|_| response.contains_pointer());
@@ -360,29 +389,14 @@ fn to_render(v: egui::Vec2) -> Vec2 {
     Vec2::new(v.x, v.y)
 }
 
-fn begin_move(frame: &Frame<'_>, state: &UiState, grabbed: Vec3, from: Vec2, free: Motion, out: &mut Outbox) -> Drag {
-    let edits = &frame.session.project().hand_edits;
-    let start = state.selection.iter().map(|&v| (v, edits.get(&v).copied().unwrap_or_default())).collect();
-    out.push(Action::Begin);
-    Drag::Move(Move { grabbed, from, free, lock: None, start, delta: DVec3::ZERO })
-}
-
-impl Move {
-    fn go_on(&mut self, ui: &Ui, view: &View, pointer: Option<Vec2>, out: &mut Outbox) {
-        for (axis, key) in [Key::X, Key::Y, Key::Z].into_iter().enumerate() {
-            let across = ui.input(|i| i.modifiers.shift);
-            if ui.input_mut(|i| i.consume_key(Modifiers::SHIFT, key) || i.consume_key(Modifiers::NONE, key)) {
-                let lock = Lock { axis, across };
-                self.lock = (self.lock != Some(lock)).then_some(lock);
-            }
-        }
-        let motion = self.lock.map_or(self.free, Lock::motion);
-        let moved = pointer.and_then(|to| displacement(view, self.grabbed, motion, self.from, to));
-        if let Some(delta) = moved.map(|d| d.as_dvec3()).filter(|d| d.is_finite() && *d != self.delta) {
-            self.delta = delta;
-            out.edit("hand edits", move_edit(&self.start, delta));
-        }
-    }
+/// Keeps pointer and keys from everything else for this frame: a click anywhere ends the operator, Tab goes on to its
+/// next number.
+fn hold_input(ui: &Ui, response: &Response) {
+    let filter = EventFilter { tab: true, horizontal_arrows: true, vertical_arrows: true, escape: true };
+    ui.memory_mut(|m| m.set_focus_lock_filter(response.id, filter));
+    let screen = ui.ctx().content_rect();
+    let cover = Area::new(Id::unique("operator")).order(Order::Foreground).fixed_pos(screen.min);
+    cover.show(ui.ctx(), |ui| ui.allocate_rect(screen, Sense::click_and_drag()));
 }
 
 /// Gives each vertex a name for screen readers and tests; the view itself handles the pointer.
