@@ -247,6 +247,7 @@ fn compensation_converges_and_is_listed() {
     let shown = window.state().session.finished().expect("computed in full");
     assert!(shown.figures.patch_strain < 0.005, "strain {}", shown.figures.patch_strain);
     assert!(shown.compensation.len() > 1, "each iteration is reported");
+    assert_eq!(super::tests_shell::unnamed(&window), Vec::<String>::new(), "every control has a name");
     window.get_by_label("WL").click();
     settle(&mut window);
     assert_eq!(project(&window).settings.compensation, CompensationMode::Wl, "chosen in the panel");

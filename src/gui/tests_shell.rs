@@ -4,7 +4,7 @@ use super::command::{Command, Facts};
 use super::dialogs::Dialog;
 use super::outbox::Action;
 use super::tests::{Window, lay_out, settle, window};
-use super::ui_state::{RightTab, Tab};
+use super::ui_state::{ResultTab, RightTab, Tab};
 use crate::project::Example;
 use egui::accesskit::{self, Role};
 use egui::{Event, Key, Modifiers, RawInput};
@@ -76,7 +76,7 @@ fn the_palette_runs_what_is_chosen_with_the_keys() {
 }
 
 /// The controls on show that have no name for a screen reader.
-fn unnamed<S>(window: &Harness<'_, S>) -> Vec<String> {
+pub(super) fn unnamed<S>(window: &Harness<'_, S>) -> Vec<String> {
     let nodes = window.root().children_recursive().map(|node| node.accesskit_node());
     let nameless = nodes.filter(|node| {
         // Edges of panels are told by their role and their value; egui gives them no name.
@@ -143,6 +143,17 @@ fn every_control_has_a_name_for_screen_readers() {
         lay_out(&mut window);
     }
     assert!(faults.is_empty(), "{} without a name:\n{}", faults.len(), faults.join("\n"));
+}
+
+#[test]
+fn every_control_of_the_results_has_a_name() {
+    let mut window = super::tests_solve::solved();
+    window.state_mut().state.right_tab = RightTab::Solve;
+    for tab in [ResultTab::Reflection, ResultTab::Pattern] {
+        window.state_mut().state.solve.tab = tab;
+        lay_out(&mut window);
+        assert_eq!(unnamed(&window), Vec::<String>::new(), "{tab:?}");
+    }
 }
 
 #[test]
