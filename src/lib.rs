@@ -41,6 +41,8 @@ pub mod render;
 
 pub mod pipeline;
 
+pub mod report;
+
 pub mod cli;
 #[cfg(feature = "gui")]
 pub mod gui;

@@ -4,7 +4,7 @@
 #![allow(clippy::print_stderr, reason = "a skipped test says so")]
 
 use conformant::render::{
-    Array, Camera, ColorMap, Gizmo, GizmoPart, Gpu, Grid, HandleState, Handles, Lines, Paint, Part, Picture,
+    Array, Camera, ColorMap, Counts, Gizmo, GizmoPart, Gpu, Grid, HandleState, Handles, Lines, Paint, Part, Picture,
     Projection, Renderer, Rgba, Scalars, Scene, StandardView, Surface, Vec3, View, colormap, picture,
 };
 
@@ -207,4 +207,92 @@ fn impossible_sizes_are_errors() {
         let view = View::new(Camera::default(), width, height);
         assert!(picture(&gpu, &scene, &view).is_err(), "{width} x {height}");
     }
+}
+
+/// A plate of 2 n² triangles, bent by `rise`.
+fn tiles(n: u32, rise: f32) -> Vec<Vec3> {
+    let at = |k: u32| 20.0 * (k as f32 / n as f32 - 0.5);
+    let places = (0..=n).flat_map(|j| (0..=n).map(move |i| (at(i), at(j))));
+    places.map(|(x, y)| Vec3::new(x, y, rise * x * x)).collect()
+}
+
+fn tile_triangles(n: u32) -> Vec<[u32; 3]> {
+    let corners = (0..n).flat_map(|j| (0..n).map(move |i| j * (n + 1) + i));
+    corners.flat_map(|a| [[a, a + 1, a + n + 2], [a, a + n + 2, a + n + 1]]).collect()
+}
+
+/// Draws a scene as the window does; what that added to the counts.
+fn added(gpu: &Gpu, renderer: &mut Renderer, scene: &Scene, view: &View) -> Counts {
+    let before = renderer.counts();
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, scene, view);
+    gpu.queue.submit([encoder.finish()]);
+    let after = renderer.counts();
+    Counts {
+        pictures: after.pictures - before.pictures,
+        positions: after.positions - before.positions,
+        values: after.values - before.values,
+        triangles: after.triangles - before.triangles,
+        lines: after.lines - before.lines,
+        handles: after.handles - before.handles,
+        gizmo: after.gizmo - before.gizmo,
+        bytes: after.bytes - before.bytes,
+    }
+}
+
+#[test]
+fn half_a_million_triangles_are_uploaded_once_and_then_only_what_changes() {
+    let Some(gpu) = gpu() else { return };
+    let n = 500;
+    let triangles: Array<[u32; 3]> = tile_triangles(n).into();
+    let part = Part::new(triangles.clone(), Paint::Matt([90, 160, 120, 255]));
+    let surface = Surface { positions: tiles(n, 0.0).into(), parts: vec![part], scalars: None };
+    let border =
+        Lines { positions: surface.positions.clone(), edges: vec![[0, n]].into(), width: 1.0, ..Lines::default() };
+    let mut scene = Scene { background: NIGHT, surfaces: vec![surface], lines: vec![border], ..Scene::default() };
+    let mut view = from_above(Projection::Perspective);
+    let mut renderer = Renderer::new(&gpu.device, &gpu.queue, wgpu::TextureFormat::Rgba8Unorm);
+    let first = added(&gpu, &mut renderer, &scene, &view);
+    let vertices = u64::from(n + 1).pow(2);
+    assert_eq!((first.positions, first.triangles, first.lines, first.pictures), (1, 1, 1, 1), "everything once");
+    assert_eq!(triangles.len(), 500_000, "half a million");
+    for _ in 0..3 {
+        assert_eq!(added(&gpu, &mut renderer, &scene, &view), Counts::default(), "nothing changes: nothing is done");
+    }
+    for _ in 0..3 {
+        view.camera.yaw += 0.1;
+        let turned = added(&gpu, &mut renderer, &scene, &view);
+        assert_eq!(turned, Counts { pictures: 1, ..Counts::default() }, "turned: nothing is uploaded");
+    }
+    for k in 1..=3_u8 {
+        let positions: Array<Vec3> = tiles(n, 0.01 * f32::from(k)).into();
+        scene.surfaces[0].positions = positions.clone();
+        scene.lines[0].positions = positions;
+        let dragged = added(&gpu, &mut renderer, &scene, &view);
+        let bytes = 12 * vertices + 24;
+        let expected = Counts { pictures: 1, positions: 1, lines: 1, bytes, ..Counts::default() };
+        assert_eq!(dragged, expected, "dragged: positions alone");
+    }
+}
+
+#[test]
+fn a_clear_ground_stays_clear_and_borders_keep_their_color() {
+    let Some(gpu) = gpu() else { return };
+    let green: Rgba = [90, 160, 120, 255];
+    let mut scene = scene(plate(Paint::Matt(green), ColorMap::Viridis));
+    scene.background = [0; 4];
+    let mut view = from_above(Projection::Perspective);
+    view.camera.yaw += 0.3;
+    let clear = picture(&gpu, &scene, &view).unwrap();
+    assert_eq!(clear.at(2, 2), [0; 4], "the ground");
+    let inside = at(&clear, &view, Vec3::ZERO);
+    assert_eq!(inside[3], 255, "the plate is opaque");
+    let borders = clear.pixels.iter().filter(|p| !matches!(p[3], 0 | 255));
+    let mut count = 0;
+    for border in borders {
+        let [r, g, b, _] = *border;
+        assert_near([r, g, b, 255], inside, 6, "a border has the plate's color, not a dark rim");
+        count += 1;
+    }
+    assert!(count > 20, "{count} texels of border");
 }

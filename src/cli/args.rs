@@ -38,12 +38,27 @@ pub enum Command {
     Compare(CompareArgs),
     /// Prove an export's certificate anew from its files
     Verify(VerifyArgs),
+    /// Write one page on a project, with the results kept beside it: HTML for any browser and for print
+    Report(PageArgs),
     /// Compute the surface error over bend radius for many cages, as tables and plots
     Study(StudyArgs),
     /// Say what a project holds and whether it can be posed
     Info(InfoArgs),
     /// Carry points through any closed triangle cage, numbers as they stand
     Apply(ApplyArgs),
+}
+
+/// Arguments of `report`.
+#[derive(Debug, Args)]
+pub struct PageArgs {
+    /// Project file
+    pub(super) file: PathBuf,
+    /// File to write
+    #[arg(long, value_name = "HTML")]
+    pub(super) out: PathBuf,
+    /// Also mesh the deformed antenna, so fine, for its quality
+    #[arg(long, value_name = "DENSITY", num_args = 0..=1, default_missing_value = "default")]
+    pub(super) mesh: Option<DensityChoice>,
 }
 
 /// Arguments of `new`.

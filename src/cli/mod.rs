@@ -16,6 +16,7 @@ mod export;
 mod info;
 mod mesh;
 mod new;
+mod page;
 mod pattern;
 mod plot_files;
 mod progress;
@@ -57,10 +58,12 @@ pub fn parse() -> Choice {
 }
 
 /// Runs a command; reports what goes wrong.
+///
+/// * `draw`: draws the view, if this program can.
 #[must_use]
-pub fn run(command: Command) -> ExitCode {
+pub fn run(command: Command, draw: Draw<'_>) -> ExitCode {
     let progress = progress::Progress::start();
-    let result = dispatch(command, progress.task());
+    let result = dispatch(command, draw, progress.task());
     finish(result, progress)
 }
 
@@ -90,7 +93,7 @@ pub fn fail(error: &anyhow::Error) -> ExitCode {
     ExitCode::FAILURE
 }
 
-fn dispatch(command: Command, task: &Task) -> Result<ExitCode> {
+fn dispatch(command: Command, draw: Draw<'_>, task: &Task) -> Result<ExitCode> {
     match command {
         Command::New(args) => new::run(&args)?,
         Command::Deform(args) => deform::deform(&args, task)?,
@@ -100,6 +103,7 @@ fn dispatch(command: Command, task: &Task) -> Result<ExitCode> {
         Command::Solve(args) => solve::run(&args, task)?,
         Command::Compare(args) => compare::run(&args, task)?,
         Command::Verify(args) => return Ok(if export::verify(&args)? { ExitCode::SUCCESS } else { FAULTS.into() }),
+        Command::Report(args) => page::run(&args, draw, task)?,
         Command::Study(args) => study::run(&args, task)?,
         Command::Info(args) => info::run(&args)?,
         Command::Apply(args) => apply::run(&args, task)?,

@@ -74,9 +74,13 @@ impl Cylinder {
     pub fn distance(&self, flat: &[DVec3], images: &[DVec3]) -> CylinderDistance {
         let gaps: Vec<DVec3> = flat.iter().zip(images).map(|(&p, &image)| image - self.position(p)).collect();
         let n = gaps.len() as f64;
-        let shift = DVec3::Z * gaps.iter().map(|g| g.z).sum::<f64>() / n;
-        let squares = || gaps.iter().map(|&g| (g - shift).length_squared());
-        CylinderDistance { greatest: squares().fold(0.0, f64::max).sqrt(), rms: (squares().sum::<f64>() / n).sqrt() }
+        let shift = gaps.iter().map(|g| g.z).sum::<f64>() / n;
+        let squares = || gaps.iter().map(|&g| (g - DVec3::Z * shift).length_squared());
+        CylinderDistance {
+            greatest: squares().fold(0.0, f64::max).sqrt(),
+            rms: (squares().sum::<f64>() / n).sqrt(),
+            shift,
+        }
     }
 }
 

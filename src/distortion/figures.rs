@@ -14,6 +14,8 @@ pub struct CylinderDistance {
     pub greatest: f64,
     /// Root of the mean square.
     pub rms: f64,
+    /// The shift along z by which the deformed antenna lies above the cylinder, m.
+    pub shift: f64,
 }
 
 /// Distortion of one deformed antenna against the flat one as drawn. Relative figures are fractions, not percent.

@@ -1,12 +1,14 @@
 //! The window: collects replies, draws the panels, carries out what they ask for.
 
 use super::command::{Command, Facts};
+use super::compare_session::CompareSession;
 use super::dialogs::{About, Dialog, Next};
 use super::disk::Disk;
+use super::edit_ui::Outline;
 use super::export_dialog::ExportDialog;
 use super::frame::set_scale;
 use super::mesh_export::MeshExport;
-use super::mesh_session::{MeshNews, MeshSession};
+use super::mesh_session::{MeshNews, MeshSession, has_cylinder};
 use super::outbox::{Action, Outbox};
 use super::palette::Palette;
 use super::recovery::Recovery;
@@ -15,9 +17,10 @@ use super::session::{News, Session, first_project};
 use super::solve_session::{SolveNews, SolveSession};
 use super::status::{Messages, Weight};
 use super::theme;
-use super::ui_state::{RightTab, Tab, UiState};
+use super::ui_state::{Heat, RightTab, Tab, UiState};
 use super::viewport::Viewport;
 use super::{APP_ID, paint, palette};
+use crate::pipeline::compare_job::CompareJob;
 use crate::pipeline::mesh_job::MeshJob;
 use crate::pipeline::solve_job::SolveJob;
 use crate::pipeline::worker::Worker;
@@ -34,6 +37,7 @@ pub(super) struct App {
     pub(super) session: Session,
     pub(super) mesh: MeshSession,
     pub(super) solve: SolveSession,
+    pub(super) compare: CompareSession,
     pub(super) state: UiState,
     pub(super) viewport: Viewport,
     pub(super) dialog: Dialog,
@@ -75,6 +79,7 @@ impl App {
             session: Session::new(first_project(), None, worker),
             mesh: MeshSession::new(MeshJob::spawn(wake())),
             solve: SolveSession::new(SolveJob::spawn(wake())),
+            compare: CompareSession::new(CompareJob::spawn(wake())),
             state,
             viewport: Viewport::default(),
             dialog: Dialog::None,
@@ -115,13 +120,23 @@ impl App {
             shows_pattern: self.state.solve.shows_pattern,
             compensates: project.settings.compensation != CompensationMode::None,
             orthographic: self.state.camera.projection == Projection::Orthographic,
+            is_painted: self.state.heat != Heat::None,
+            is_comparing: self.compare.is_busy(),
+            has_cylinder: has_cylinder(project),
+            shows_ghost: self.state.shows_ghost,
             shows_cage: self.state.shows_cage,
             sees_through: self.state.sees_through,
             shows_log: self.state.shows_log,
+            selects_by_box: self.state.editing.outline == Some(Outline::Box),
+            selects_by_lasso: self.state.editing.outline == Some(Outline::Lasso),
+            snaps: self.state.editing.snaps,
+            is_proportional: self.state.editing.is_proportional,
+            mirrors: self.state.editing.mirrors,
+            can_play: self.session.can_play(),
+            is_playing: self.session.play().is_on(),
             shows_history: self.state.tab == Tab::History && self.state.shows_left,
             shows_left: self.state.shows_left,
             shows_right: self.state.shows_right,
-            selects_by_box: self.state.selects_by_box,
             theme: Some(self.state.theme),
         }
     }
@@ -143,7 +158,9 @@ impl App {
                 self.edit("presets", Edit::InsertPreset { index, entry });
             }
             Action::Run(command) => self.run(ctx, command),
+            Action::Show(play) => self.session.show(play),
             Action::StopWork => self.session.stop_work(),
+            Action::CancelCompare => self.compare.cancel(),
             Action::CancelMesh => self.mesh.cancel(),
             Action::CancelSolve => self.solve.cancel(),
             Action::ResumeSolve => self.solve.resume(),
@@ -211,17 +228,6 @@ impl App {
             }
             Command::Undo => self.session.undo(),
             Command::Redo => self.session.redo(),
-            Command::SelectAll => {
-                let count = self.session.pose().map_or(0, |p| p.cage.n_handles());
-                state.selection = (0..u32::try_from(count).unwrap_or(u32::MAX)).collect();
-            }
-            Command::SelectNone => state.selection.clear(),
-            Command::BoxSelect => state.selects_by_box = !state.selects_by_box,
-            Command::ResetSelected => {
-                let zero = state.selection.iter().map(|&v| (v, [0.0; 3])).collect();
-                self.edit("hand edits", Edit::MoveVertices(zero));
-            }
-            Command::ResetAll => self.edit("hand edits", Edit::ClearHandEdits),
             Command::Compensate => self.compensate(CompensationMode::Isometric),
             Command::CompensateNot => self.compensate(CompensationMode::None),
             Command::Mesh => {
@@ -253,8 +259,12 @@ impl App {
                 }
             }
             Command::SavePlot => self.ask_plot(None),
+            Command::SavePicture => self.ask_picture(),
+            Command::Report => self.ask_report(),
+            Command::Compare => self.compare.start(self.session.project()),
             Command::Palette => self.dialog = Dialog::Palette(Palette::default()),
             Command::Keys => self.dialog = Dialog::Keys,
+            _ if self.run_edit(command) => {}
             _ => self.run_view(ctx, command),
         }
     }
@@ -262,8 +272,21 @@ impl App {
     /// Forgets what was computed for another project.
     pub(super) fn forget_computed(&mut self) {
         self.solve.clear();
+        self.compare.clear();
         self.mesh.clear();
         self.state.forget_mesh();
+    }
+
+    /// Shows a little more of the deformation while it is played.
+    fn go_on_playing(&mut self, ctx: &egui::Context) {
+        let play = self.session.play();
+        if play.is_running {
+            // A frame that took long, as the first one does, is no reason to jump.
+            let seconds = ctx.input(|i| i.stable_dt).min(0.1);
+            self.session.show(play.after(f64::from(seconds)));
+            ctx.request_repaint();
+        }
+        (self.state.play, self.state.can_play) = (self.session.play(), self.session.can_play());
     }
 
     /// Takes what the meshing thread has to say; the first mesh is shown at once.
@@ -355,6 +378,8 @@ impl eframe::App for App {
         }
         self.sync_mesh();
         self.sync_solve();
+        self.sync_compare();
+        self.go_on_playing(&ctx);
         let facts = self.facts();
         let mut out = Outbox::default();
         let is_modal = !matches!(self.dialog, Dialog::None);
@@ -379,11 +404,12 @@ impl eframe::App for App {
             self.tell(news);
         }
         // For the progress: rarely while the solver needs the processor.
-        let pause = match (self.session.is_busy() || self.mesh.is_busy(), self.solve.is_busy()) {
-            (true, _) => Some(100),
-            (false, true) => Some(500),
-            (false, false) => None,
-        };
+        let pause =
+            match (self.session.is_busy() || self.mesh.is_busy() || self.compare.is_busy(), self.solve.is_busy()) {
+                (true, _) => Some(100),
+                (false, true) => Some(500),
+                (false, false) => None,
+            };
         if let Some(pause) = pause {
             ctx.request_repaint_after(std::time::Duration::from_millis(pause));
         }

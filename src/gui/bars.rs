@@ -3,8 +3,9 @@
 use super::command::{Command, Facts};
 use super::notices::recent_item;
 use super::outbox::{Action, Outbox};
+use super::selecting::Pick;
 use crate::project::Example;
-use crate::render::StandardView;
+use crate::render::{Operator, StandardView};
 use Command as C;
 use egui::{ThemePreference, Ui};
 use std::path::PathBuf;
@@ -13,25 +14,42 @@ use std::path::PathBuf;
 pub(super) type Menu = (&'static str, &'static [&'static [Command]]);
 
 /// The menus from left to right. Every command stands in exactly one of them.
-pub(super) const MENUS: [Menu; 6] = [
+pub(super) const MENUS: [Menu; 8] = [
     (
         "File",
         &[
             &[C::New, C::Open, C::Save, C::SaveAs, C::ClearRecent],
-            &[C::Export, C::ExportMesh, C::ExportResults, C::SavePlot],
+            &[C::Export, C::ExportMesh, C::ExportResults],
+            &[C::SavePlot, C::SavePicture, C::Report],
             &[C::Quit],
         ],
     ),
+    ("Edit", &[&[C::Undo, C::Redo, C::ShowHistory], &[C::Palette]]),
     (
-        "Edit",
+        "Select",
         &[
-            &[C::Undo, C::Redo, C::ShowHistory],
-            &[C::SelectAll, C::SelectNone, C::BoxSelect],
-            &[C::ResetSelected, C::ResetAll],
-            &[C::Palette],
+            &[C::SelectAll, C::SelectNone, C::Select(Pick::Inverse)],
+            &[C::BoxSelect, C::LassoSelect],
+            &[
+                C::Select(Pick::Station),
+                C::Select(Pick::Row),
+                C::Select(Pick::Column),
+                C::Select(Pick::Top),
+                C::Select(Pick::Bottom),
+            ],
+            &[C::Select(Pick::More), C::Select(Pick::Less)],
         ],
     ),
-    ("Antenna", &[&[C::Compensate, C::CompensateNot], &[C::Mesh, C::Solve]]),
+    (
+        "Cage",
+        &[
+            &[C::Operate(Operator::Move), C::Operate(Operator::Rotate), C::Operate(Operator::Scale)],
+            &[C::Proportional, C::Snap, C::Mirror(0), C::Mirror(1)],
+            &[C::ResetSelected, C::ResetAll],
+            &[C::Play],
+        ],
+    ),
+    ("Antenna", &[&[C::Compensate, C::CompensateNot, C::Compare], &[C::Mesh, C::Solve]]),
     (
         "View",
         &[
@@ -46,7 +64,7 @@ pub(super) const MENUS: [Menu; 6] = [
                 C::LookFrom(StandardView::Isometric),
                 C::Orthographic,
             ],
-            &[C::ShowCage, C::SeeThrough, C::ShowMesh, C::ShowPattern],
+            &[C::ShowCage, C::SeeThrough, C::ShowGhost, C::ShowMesh, C::ShowPattern],
             &[C::ShowResults, C::ShowLog, C::ShowLeft, C::ShowRight, C::ResetLayout],
             &[C::ZoomIn, C::ZoomOut, C::ZoomReset],
             &[C::NextPanel, C::PreviousPanel],

@@ -2,11 +2,12 @@
 //!
 //! Menus, toolbar and shortcuts all read this one list, so that none can say something the others do not.
 
+use super::selecting::Pick;
 use crate::project::Example;
-use crate::render::StandardView;
-use egui::{Key, KeyboardShortcut, Modifiers, ThemePreference, os::OperatingSystem};
+use crate::render::{Operator, StandardView};
+use egui::ThemePreference;
 
-/// Something the user can ask for.
+/// Something the user can ask for. `Mirror` holds the number of the axis across whose mid-plane edits are mirrored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Command {
     New,
@@ -20,9 +21,16 @@ pub(super) enum Command {
     Redo,
     SelectAll,
     SelectNone,
+    Select(Pick),
     BoxSelect,
+    LassoSelect,
+    Operate(Operator),
+    Proportional,
+    Snap,
+    Mirror(usize),
     ResetSelected,
     ResetAll,
+    Play,
     Compensate,
     CompensateNot,
     Mesh,
@@ -33,6 +41,10 @@ pub(super) enum Command {
     ShowPattern,
     ExportResults,
     SavePlot,
+    SavePicture,
+    Report,
+    Compare,
+    ShowGhost,
     Fit,
     LookFrom(StandardView),
     Orthographic,
@@ -80,6 +92,17 @@ pub(super) struct Facts {
     pub(super) shows_left: bool,
     pub(super) shows_right: bool,
     pub(super) selects_by_box: bool,
+    pub(super) is_painted: bool,
+    pub(super) is_comparing: bool,
+    pub(super) has_cylinder: bool,
+    pub(super) shows_ghost: bool,
+    pub(super) selects_by_lasso: bool,
+    pub(super) snaps: bool,
+    pub(super) is_proportional: bool,
+    pub(super) mirrors: [bool; 2],
+    /// Whether the deformation can be played: it is there and computed in full.
+    pub(super) can_play: bool,
+    pub(super) is_playing: bool,
     pub(super) theme: Option<ThemePreference>,
 }
 
@@ -97,9 +120,26 @@ impl Command {
         Self::Redo,
         Self::SelectAll,
         Self::SelectNone,
+        Self::Select(Pick::Inverse),
         Self::BoxSelect,
+        Self::LassoSelect,
+        Self::Select(Pick::Station),
+        Self::Select(Pick::Row),
+        Self::Select(Pick::Column),
+        Self::Select(Pick::Top),
+        Self::Select(Pick::Bottom),
+        Self::Select(Pick::More),
+        Self::Select(Pick::Less),
+        Self::Operate(Operator::Move),
+        Self::Operate(Operator::Rotate),
+        Self::Operate(Operator::Scale),
+        Self::Proportional,
+        Self::Snap,
+        Self::Mirror(0),
+        Self::Mirror(1),
         Self::ResetSelected,
         Self::ResetAll,
+        Self::Play,
         Self::Compensate,
         Self::CompensateNot,
         Self::Mesh,
@@ -110,6 +150,10 @@ impl Command {
         Self::ShowPattern,
         Self::ExportResults,
         Self::SavePlot,
+        Self::SavePicture,
+        Self::Report,
+        Self::Compare,
+        Self::ShowGhost,
         Self::Fit,
         Self::LookFrom(StandardView::Front),
         Self::LookFrom(StandardView::Back),
@@ -158,7 +202,23 @@ impl Command {
             Self::Redo => ("Redo", "Do again what was taken back"),
             Self::SelectAll => ("Select all vertices", "Select every cage vertex"),
             Self::SelectNone => ("Select none", "Deselect all cage vertices"),
-            Self::BoxSelect => ("Select by box", "Drag a box around cage vertices; Shift adds to the selection"),
+            Self::Select(pick) => pick.text_and_tip(),
+            Self::BoxSelect => ("Select by box", "Drag a box around vertices; Shift adds them, Alt takes them away"),
+            Self::LassoSelect => {
+                ("Select by lasso", "Draw a line around vertices; Shift adds them, Alt takes them away")
+            }
+            Self::Operate(Operator::Move) => {
+                ("Move", "Move the selected vertices with the pointer or by typed numbers")
+            }
+            Self::Operate(Operator::Rotate) => ("Rotate", "Turn the selected vertices about their middle"),
+            Self::Operate(Operator::Scale) => ("Scale", "Spread or gather the selected vertices about their middle"),
+            Self::Proportional => {
+                ("Proportional editing", "Let vertices near the selection follow it, the nearer the more")
+            }
+            Self::Snap => ("Snap to steps", "Round moves to whole steps; Ctrl does the opposite while moving"),
+            Self::Mirror(0) => ("Mirror in x", "Do the mirrored to the partners across the plane x = 0"),
+            Self::Mirror(_) => ("Mirror in y", "Do the mirrored to the partners across the plane y = 0"),
+            Self::Play => ("Play deformation", "Show the antenna go from flat to deformed; again stops"),
             Self::ResetSelected => {
                 ("Reset selected vertices", "Put the selected vertices back to where the presets have them")
             }
@@ -173,16 +233,12 @@ impl Command {
             Self::ShowPattern => ("3-D pattern", "Draw the radiation pattern around the antenna"),
             Self::ExportResults => ("Export results…", "Write a run's reflection as a table or a Touchstone file"),
             Self::SavePlot => ("Save plot…", "Save a plot as SVG, PNG or CSV, as it would be printed"),
+            Self::SavePicture => ("Save picture…", "Save the 3-D view as a picture of any size, with its colour bar"),
+            Self::Report => ("Save report…", "Write one page on the project, for any browser and for print"),
+            Self::Compare => ("Compare compensations", "Compute it raw, by WL and isometrically, side by side"),
+            Self::ShowGhost => ("Exact cylinder", "Draw the exact cylinder through the antenna"),
             Self::Fit => ("Fit", "Show all of the antenna and its cage, or of the mesh"),
-            Self::LookFrom(view) => match view {
-                StandardView::Front => ("Front", "Look along +y, x to the right"),
-                StandardView::Back => ("Back", "Look along -y"),
-                StandardView::Right => ("Right", "Look from +x"),
-                StandardView::Left => ("Left", "Look from -x"),
-                StandardView::Top => ("Top", "Look down, x to the right and y up"),
-                StandardView::Bottom => ("Bottom", "Look up at the ground plane"),
-                StandardView::Isometric => ("Isometric", "Look from +x, -y and +z"),
-            },
+            Self::LookFrom(view) => view_text(view),
             Self::Orthographic => ("Orthographic", "No perspective: equal lengths look equal"),
             Self::ShowCage => ("Cage", "Show the cage and its vertices"),
             Self::SeeThrough => ("See-through substrate", "Show the pin and the ground through the substrate"),
@@ -214,60 +270,6 @@ impl Command {
         }
     }
 
-    /// Keys that run it; the first is the one shown.
-    pub(super) fn keys(self, os: OperatingSystem) -> Vec<KeyboardShortcut> {
-        let command = |key| KeyboardShortcut::new(Modifiers::COMMAND, key);
-        let command_shift = |key| KeyboardShortcut::new(Modifiers::COMMAND | Modifiers::SHIFT, key);
-        let plain = |key| KeyboardShortcut::new(Modifiers::NONE, key);
-        let control = |key| KeyboardShortcut::new(Modifiers::CTRL, key);
-        match self {
-            Self::New => vec![command(Key::N)],
-            Self::Open => vec![command(Key::O)],
-            Self::Save => vec![command(Key::S)],
-            Self::SaveAs => vec![command_shift(Key::S)],
-            Self::Export => vec![command(Key::E)],
-            Self::Quit => vec![command(Key::Q)],
-            Self::Undo => vec![command(Key::Z)],
-            Self::Redo if os == OperatingSystem::Mac => vec![command_shift(Key::Z)],
-            Self::Redo => vec![command(Key::Y), command_shift(Key::Z)],
-            Self::SelectAll => vec![command(Key::A)],
-            Self::SelectNone => vec![command_shift(Key::A)],
-            Self::BoxSelect => vec![plain(Key::B)],
-            Self::ResetSelected => vec![plain(Key::Delete), plain(Key::Backspace)],
-            Self::Compensate => vec![command(Key::Enter)],
-            Self::Mesh => vec![plain(Key::M)],
-            Self::ExportMesh => vec![command_shift(Key::E)],
-            Self::ShowMesh => vec![plain(Key::V)],
-            Self::Solve => vec![plain(Key::F5)],
-            Self::ShowResults => vec![plain(Key::P)],
-            Self::ShowPattern => vec![plain(Key::L)],
-            Self::ExportResults => vec![command_shift(Key::R)],
-            Self::Fit => vec![plain(Key::F), plain(Key::Home)],
-            Self::LookFrom(StandardView::Front) => vec![plain(Key::Num1)],
-            Self::LookFrom(StandardView::Back) => vec![control(Key::Num1)],
-            Self::LookFrom(StandardView::Right) => vec![plain(Key::Num3)],
-            Self::LookFrom(StandardView::Left) => vec![control(Key::Num3)],
-            Self::LookFrom(StandardView::Top) => vec![plain(Key::Num7)],
-            Self::LookFrom(StandardView::Bottom) => vec![control(Key::Num7)],
-            Self::LookFrom(StandardView::Isometric) => vec![plain(Key::Num0)],
-            Self::Orthographic => vec![plain(Key::Num5)],
-            Self::ShowCage => vec![plain(Key::C)],
-            Self::SeeThrough => vec![plain(Key::T)],
-            Self::ShowHistory => vec![command(Key::H)],
-            Self::ShowLeft => vec![plain(Key::F8)],
-            Self::ShowRight => vec![plain(Key::F9)],
-            Self::ZoomIn => vec![command(Key::Plus), command(Key::Equals)],
-            Self::ZoomOut => vec![command(Key::Minus)],
-            Self::ZoomReset => vec![command(Key::Num0)],
-            Self::NextPanel => vec![plain(Key::F6)],
-            Self::PreviousPanel => vec![KeyboardShortcut::new(Modifiers::SHIFT, Key::F6)],
-            Self::Palette => vec![command_shift(Key::P)],
-            Self::Keys => vec![plain(Key::F1)],
-            Self::ResetLayout | Self::ClearRecent | Self::Welcome | Self::Example(_) => Vec::new(),
-            Self::ResetAll | Self::CompensateNot | Self::SavePlot | Self::ShowLog | Self::Theme(_) => Vec::new(),
-        }
-    }
-
     /// Why it cannot be used now; `None` if it can.
     pub(super) fn why_not(self, facts: &Facts) -> Option<&'static str> {
         let (is_possible, why) = match self {
@@ -281,13 +283,23 @@ impl Command {
             Self::ExportMesh | Self::ShowMesh => (facts.has_mesh, "there is no mesh yet"),
             Self::Solve => (!facts.is_solving, "a run is under way"),
             Self::ExportResults => (facts.has_results, "there are no results yet"),
-            Self::SavePlot => {
-                (facts.has_results || facts.has_mesh, "there is nothing to plot: no results and no mesh yet")
-            }
+            Self::SavePlot => (
+                facts.has_results || facts.has_mesh || facts.is_painted,
+                "there is nothing to plot: no results, no mesh, nothing painted",
+            ),
+            Self::Compare => (!facts.is_comparing, "a comparison is under way"),
+            Self::ShowGhost => (facts.has_cylinder, "only a single bend without hand edits has one"),
             Self::ShowPattern => (facts.has_pattern, "no run with a pattern yet"),
-            Self::BoxSelect | Self::ShowCage | Self::SeeThrough => {
-                (!facts.shows_mesh, "there is no cage in the view of the mesh")
+            Self::BoxSelect | Self::LassoSelect | Self::Operate(_) | Self::ShowCage | Self::SeeThrough
+                if facts.shows_mesh =>
+            {
+                (false, "there is no cage in the view of the mesh")
             }
+            Self::BoxSelect | Self::LassoSelect => (facts.shows_cage, "the cage is hidden"),
+            Self::Operate(_) if facts.has_selection => (facts.shows_cage, "the cage is hidden"),
+            Self::Operate(_) => (false, "no vertex is selected"),
+            Self::Select(pick) if pick.needs_selection() => (facts.has_selection, "no vertex is selected"),
+            Self::Play => (facts.can_play, "there is no deformation that was computed in full"),
             _ => return None,
         };
         (!is_possible).then_some(why)
@@ -305,6 +317,7 @@ impl Command {
             Self::ShowMesh => Some(facts.shows_mesh),
             Self::ShowResults => Some(facts.shows_results),
             Self::ShowPattern => Some(facts.shows_pattern),
+            Self::ShowGhost => Some(facts.shows_ghost),
             Self::ShowCage => Some(facts.shows_cage),
             Self::SeeThrough => Some(facts.sees_through),
             Self::ShowHistory => Some(facts.shows_history),
@@ -312,9 +325,27 @@ impl Command {
             Self::ShowRight => Some(facts.shows_right),
             Self::ShowLog => Some(facts.shows_log),
             Self::BoxSelect => Some(facts.selects_by_box),
+            Self::LassoSelect => Some(facts.selects_by_lasso),
+            Self::Proportional => Some(facts.is_proportional),
+            Self::Snap => Some(facts.snaps),
+            Self::Mirror(axis) => Some(facts.mirrors[axis]),
+            Self::Play => Some(facts.is_playing),
             Self::Theme(theme) => Some(facts.theme == Some(theme)),
             _ => None,
         }
+    }
+}
+
+/// Text and tooltip of a view.
+fn view_text(view: StandardView) -> (&'static str, &'static str) {
+    match view {
+        StandardView::Front => ("Front", "Look along +y, x to the right"),
+        StandardView::Back => ("Back", "Look along -y"),
+        StandardView::Right => ("Right", "Look from +x"),
+        StandardView::Left => ("Left", "Look from -x"),
+        StandardView::Top => ("Top", "Look down, x to the right and y up"),
+        StandardView::Bottom => ("Bottom", "Look up at the ground plane"),
+        StandardView::Isometric => ("Isometric", "Look from +x, -y and +z"),
     }
 }
 
@@ -322,6 +353,7 @@ impl Command {
 mod tests {
     use super::super::bars::MENUS;
     use super::*;
+    use egui::os::OperatingSystem;
     use std::collections::HashMap;
 
     #[test]

@@ -1,7 +1,7 @@
 //! How commands are given: by key, as a line of a menu, as a button.
 
 use super::command::{Command, Facts};
-use egui::{Context, Key, KeyboardShortcut};
+use egui::{Context, Key, KeyboardShortcut, Modifiers};
 
 impl Command {
     /// What its tooltip says: what it does and its keys.
@@ -24,7 +24,8 @@ impl Command {
         // Letters and digits, and the keys by which text is selected, undone and redone.
         let is_text = |k: &KeyboardShortcut| {
             let edits_text = matches!(k.logical_key, Key::A | Key::Z | Key::Y);
-            (k.modifiers.is_none() && !(Key::F1..=Key::F35).contains(&k.logical_key)) || edits_text
+            let is_letter = k.modifiers.is_none() || k.modifiers == Modifiers::SHIFT;
+            (is_letter && !(Key::F1..=Key::F35).contains(&k.logical_key)) || edits_text
         };
         let mut found = Vec::new();
         for (shortcut, command) in keys {

@@ -11,10 +11,12 @@ use super::outbox::{Action, Outbox};
 use super::palette::Palette;
 use super::plot_export::PlotExport;
 use super::recovery::Found;
+use super::report_export::ReportExport;
 use super::result_export::ResultExport;
 use super::session::first_project;
 use super::theme::Tokens;
 use super::ui_state::UiState;
+use super::view_export::ViewExport;
 use crate::project::Example;
 use egui::{Context, Id, Key, Modal, RichText, TextEdit, Ui};
 use std::path::{Path, PathBuf};
@@ -78,6 +80,8 @@ pub(super) enum Dialog {
     MeshExport(Box<MeshExport>),
     ResultExport(Box<ResultExport>),
     PlotExport(Box<PlotExport>),
+    ViewExport(Box<ViewExport>),
+    Report(Box<ReportExport>),
     Palette(Palette),
     Keys,
     Welcome,
@@ -263,6 +267,8 @@ impl Dialog {
                 Self::MeshExport(dialog) => dialog.ui(ui, state, out),
                 Self::ResultExport(dialog) => dialog.ui(ui, state, out),
                 Self::PlotExport(dialog) => dialog.ui(ui, state, out),
+                Self::ViewExport(dialog) => dialog.ui(ui, state, out),
+                Self::Report(dialog) => dialog.ui(ui, state, out),
                 Self::Palette(palette) => palette.ui(ui, about.facts, &state.recent_commands, out),
                 Self::Keys => keys(ui),
                 Self::Welcome => notices::welcome(ui, &state.recent_files, out),
@@ -281,6 +287,8 @@ impl Dialog {
         match self {
             Self::Export(dialog) => dialog.is_working(),
             Self::MeshExport(dialog) => dialog.is_working(),
+            Self::ViewExport(dialog) => dialog.is_working(),
+            Self::Report(dialog) => dialog.is_working(),
             _ => false,
         }
     }
@@ -312,13 +320,19 @@ fn keys(ui: &mut Ui) -> bool {
     let mouse = [
         ("Drag a cage vertex", "Move it, or all selected ones, in the plane of the screen"),
         ("Drag an arrow", "Move the selection along an axis"),
-        ("X, Y, Z while dragging", "Bind the motion to an axis; with Shift to the plane across it"),
-        ("Esc while dragging", "Put everything back"),
         ("Click, Shift+click", "Select a vertex; add or remove one"),
-        ("Ctrl+drag (Cmd on a Mac)", "Select by a box"),
+        ("Ctrl+drag (Cmd on a Mac)", "Select by a lasso; Shift adds, Alt takes away"),
         ("Left drag on empty ground", "Turn the view"),
         ("Middle, right or Shift+drag", "Slide the view"),
         ("Wheel, pinch", "Zoom to the pointer"),
+        ("While vertices move:", ""),
+        ("X, Y, Z", "Bind the motion to an axis; with Shift to the plane across it; again: free"),
+        ("Digits . -", "Move by exactly so many mm, degrees or times; Tab: the next axis"),
+        ("=", "The number is where the vertex is to be, not how far it goes"),
+        ("Ctrl, Shift", "Whole steps (or not, where they are on); a tenth of the speed"),
+        ("O, wheel, Page up and down", "Let near vertices follow; their radius"),
+        ("G, R, S", "Go on moving, turning or scaling from the same beginning"),
+        ("Enter or click; Esc or right click", "Apply; put everything back"),
     ];
     egui::ScrollArea::vertical().max_height(460.0).show(ui, |ui| {
         egui::Grid::new("keys").num_columns(2).striped(true).show(ui, |ui| {

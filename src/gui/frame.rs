@@ -33,6 +33,7 @@ impl App {
                 }
             }
             Command::ShowCage => state.shows_cage = !state.shows_cage,
+            Command::ShowGhost => state.shows_ghost = !state.shows_ghost,
             Command::SeeThrough => state.sees_through = !state.sees_through,
             Command::ShowHistory => {
                 let is_shown = state.tab == Tab::History && state.shows_left;
@@ -78,11 +79,14 @@ impl App {
             shown.response.rect
         });
         let [left, right] = self.side_panels(ui, facts, out);
-        let pose = self.session.pose().cloned();
+        let own = self.session.pose().cloned();
         let view = CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
             let mesh = self.mesh.shown().filter(|_| self.state.mesh.shows);
             let solve = Some(&self.solve).filter(|_| self.state.solve.shows_pattern);
-            let sources = Sources { session: &self.session, pose: pose.as_ref(), mesh, solve };
+            let preview = self.state.preview.filter(|_| mesh.is_none());
+            let on_show = self.compare.on_show_or(&self.session, preview);
+            let pose = preview.and_then(|mode| self.compare.pose(mode)).or(own.as_ref());
+            let sources = Sources { session: &self.session, pose, mesh, solve, on_show, preview };
             self.viewport.ui(ui, sources, &mut self.state, out);
         });
         let (status, view) = (status.response.rect, view.response.rect);

@@ -21,32 +21,45 @@ mod app;
 mod bars;
 mod command;
 mod command_input;
+mod compare_session;
 mod dialogs;
 mod disk;
+mod edit_commands;
+mod edit_overlay;
+mod edit_ui;
 mod export_dialog;
 mod field;
 mod files;
 mod frame;
 mod guard;
+mod hand_edits;
+mod heat;
+mod keys;
 mod mesh_export;
 mod mesh_scene;
 mod mesh_session;
 mod notices;
+mod operating;
 mod outbox;
 mod overlay;
 mod paint;
 mod palette;
 mod panel_antenna;
 mod panel_cage;
+mod panel_compare;
 mod panel_compensation;
 mod panel_distortion;
+mod panel_heat;
 mod panel_history;
 mod panel_materials;
 mod panel_mesh;
 mod panel_results;
 mod panel_solve;
+mod panel_stack;
+mod panel_vertices;
 mod pattern_scene;
 mod picture;
+mod play;
 mod plot_export;
 mod plot_s11;
 mod plots;
@@ -54,8 +67,10 @@ mod polar;
 mod preset_fields;
 mod readouts;
 mod recovery;
+mod report_export;
 mod result_export;
 mod scene;
+mod selecting;
 mod session;
 mod sides;
 mod smith;
@@ -63,6 +78,8 @@ mod solve_session;
 mod status;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_edit;
 #[cfg(test)]
 mod tests_materials;
 #[cfg(test)]
@@ -75,9 +92,12 @@ mod tests_safety;
 mod tests_shell;
 #[cfg(test)]
 mod tests_solve;
+#[cfg(test)]
+mod tests_view;
 mod theme;
 mod trace;
 mod ui_state;
+mod view_export;
 mod viewport;
 
 pub use picture::picture;

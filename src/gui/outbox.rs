@@ -2,6 +2,7 @@
 
 use super::command::Command;
 use super::dialogs::Next;
+use super::play::Play;
 use super::plots::PlotKind;
 use super::status::Weight;
 use crate::project::{Edit, PresetSpec, Project};
@@ -25,8 +26,12 @@ pub(super) enum Action {
     Run(Command),
     /// Adds a preset at the end of the stack.
     AddPreset(PresetSpec),
+    /// Shows a part of the deformation.
+    Show(Play),
     /// Stops the computation under way.
     StopWork,
+    /// Calls the comparison off.
+    CancelCompare,
     /// Calls the meshing off.
     CancelMesh,
     /// Calls the solver off.

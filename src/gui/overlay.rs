@@ -1,13 +1,12 @@
 //! Lettering over the 3-D view: view name, axes, scale bar, colour bar, and hints while something is dragged.
 
+use super::heat::Bar;
 use super::mesh_scene::{ANGLE_RANGE, Look};
 use super::session::Pose;
 use super::theme::Tokens;
-use super::ui_state::{MeshPaint, UiState};
-use super::viewport::Lock;
-use crate::geometry::DVec3;
+use super::ui_state::{Heat, MeshPaint};
 use crate::render::pick::surface_at;
-use crate::render::{ColorMap, Projection, StandardView, Surface, Vec2, Vec3, View, colormap, round_length};
+use crate::render::{ColorMap, Paint, Projection, StandardView, Surface, Vec2, Vec3, View, colormap, round_length};
 use crate::units::to_mm;
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, StrokeKind, Ui, pos2, vec2};
 
@@ -35,40 +34,61 @@ fn lettering(painter: &Painter, at: Pos2, anchor: Align2, text: impl Into<String
     painter.galley(area.min, galley, color);
 }
 
-/// Draws what is always there, and the colour bar if `range` (percent) says that something is painted on the antenna.
-pub(super) fn draw(ui: &Ui, rect: Rect, view: &View, state: &UiState, range: Option<f32>) {
+/// Draws what is always there.
+pub(super) fn draw(ui: &Ui, rect: Rect, view: &View) {
     let painter = ui.painter().with_clip_rect(rect);
     let tokens = Tokens::here(ui);
     let place = rect.min + vec2(MARGIN, MARGIN - 2.0);
     lettering(&painter, place, Align2::LEFT_TOP, view_name(view), tokens.weak, tokens);
     axes(&painter, rect, view, tokens);
     scale_bar(&painter, rect, view, tokens);
-    if let Some(range) = range {
-        let digits = if range < 1.0 { 2 } else { 1 };
-        let tick = |k: u8| match k {
-            2 => "0 %".to_owned(),
-            _ => format!("{:+.digits$} %", range * (1.0 - f32::from(k) / 2.0)),
-        };
-        let scale = ColorBar { map: ColorMap::CoolWarm, title: state.heat.text(), ticks: [0, 1, 2, 3, 4].map(tick) };
-        scale.draw(&painter, rect, tokens);
+}
+
+/// Says something of the view, below its name.
+pub(super) fn note(ui: &Ui, rect: Rect, text: String, color: Color32) {
+    let painter = ui.painter().with_clip_rect(rect);
+    let place = rect.min + vec2(MARGIN, MARGIN + 20.0);
+    lettering(&painter, place, Align2::LEFT_TOP, text, color, Tokens::here(ui));
+}
+
+/// Draws scales of colours side by side, the first at the right.
+pub(super) fn bars(ui: &Ui, rect: Rect, bars: &[Bar]) {
+    let painter = ui.painter().with_clip_rect(rect);
+    for (k, bar) in bars.iter().enumerate() {
+        draw_bar(bar, &painter, rect.with_max_x(rect.right() - 130.0 * k as f32), Tokens::here(ui));
     }
 }
 
-/// Draws the scale of the pattern of a run, dBi from `ends`, beside another scale if there is one.
-pub(super) fn pattern(ui: &Ui, rect: Rect, (run, freq): (&str, f64), [low, high]: [f32; 2], is_second: bool) {
+/// The scale of the pattern of a run, dBi from `ends`.
+pub(super) fn pattern_bar(freq: f64, [low, high]: [f32; 2]) -> Bar {
     // Adding zero turns -0 round.
     let tick = |k: u8| format!("{:.1}", ((high + (low - high) * f32::from(k) / 4.0) * 10.0).round() / 10.0 + 0.0);
     let title = format!("Directivity (dBi), {}", super::polar::freq_text(freq));
-    let scale = ColorBar { map: ColorMap::Viridis, title: &title, ticks: [0, 1, 2, 3, 4].map(tick) };
-    let shift = if is_second { 130.0 } else { 0.0 };
-    let painter = ui.painter().with_clip_rect(rect);
-    let tokens = Tokens::here(ui);
-    scale.draw(&painter, rect.with_max_x(rect.right() - shift), tokens);
-    let place = rect.min + vec2(MARGIN, MARGIN + 20.0);
-    lettering(&painter, place, Align2::LEFT_TOP, format!("Pattern of {run}"), tokens.weak, tokens);
+    Bar { map: ColorMap::Viridis, title, ticks: [0, 1, 2, 3, 4].map(tick) }
 }
 
-/// Draws what a picture of a mesh needs: a legend or a scale, and whether the mesh is out of date.
+/// The scale of the smallest dihedral angle.
+pub(super) fn angle_bar() -> Bar {
+    let [low, high] = ANGLE_RANGE;
+    let tick = |k: usize| format!("{:.0}°", high + (low - high) * k as f32 / 4.0);
+    let mut ticks = [0, 1, 2, 3, 4].map(tick);
+    ticks[0].insert_str(0, "≥ ");
+    Bar { map: ColorMap::Viridis, title: "Smallest dihedral angle".to_owned(), ticks }
+}
+
+/// Marks the places where a refused shape crosses itself.
+pub(super) fn crossings(ui: &Ui, rect: Rect, view: &View, places: impl Iterator<Item = Vec3>) {
+    let painter = ui.painter().with_clip_rect(rect);
+    let tokens = Tokens::here(ui);
+    for seen in places.filter_map(|place| view.project(place)) {
+        let at = rect.min + vec2(seen.at.x, seen.at.y);
+        painter.circle_stroke(at, 7.0, Stroke::new(3.5, tokens.viewport));
+        painter.circle_stroke(at, 7.0, Stroke::new(1.8, tokens.signal));
+        painter.circle_filled(at, 2.0, tokens.signal);
+    }
+}
+
+/// Draws what a picture of a mesh needs: a legend, and whether the mesh is out of date.
 pub(super) fn mesh(ui: &Ui, rect: Rect, looks: impl Iterator<Item = Look>, paint: MeshPaint, is_stale: bool) {
     let painter = ui.painter().with_clip_rect(rect);
     let tokens = Tokens::here(ui);
@@ -77,15 +97,8 @@ pub(super) fn mesh(ui: &Ui, rect: Rect, looks: impl Iterator<Item = Look>, paint
         let text = "⚠ Out of date: the geometry has changed since";
         lettering(&painter, place, Align2::LEFT_TOP, text, tokens.warning, tokens);
     }
-    let mut top = 0.0;
-    if paint == MeshPaint::Angle {
-        let [low, high] = ANGLE_RANGE;
-        let tick = |k: usize| format!("{:.0}°", high + (low - high) * k as f32 / 4.0);
-        let mut ticks = [0, 1, 2, 3, 4].map(tick);
-        ticks[0].insert_str(0, "≥ ");
-        ColorBar { map: ColorMap::Viridis, title: "Smallest dihedral angle", ticks }.draw(&painter, rect, tokens);
-        top = 22.0 + (rect.height() * 0.4).clamp(80.0, 240.0) + 18.0;
-    }
+    let below_bar = 22.0 + (rect.height() * 0.4).clamp(80.0, 240.0) + 18.0;
+    let top = if paint == MeshPaint::Angle { below_bar } else { 0.0 };
     legend(&painter, rect, top, looks.map(|look| (look.text(), look.color(tokens))), tokens);
 }
 
@@ -141,44 +154,32 @@ fn scale_bar(painter: &Painter, rect: Rect, view: &View, tokens: &Tokens) {
     painter.text(left.lerp(right, 0.5) - vec2(0.0, 4.0), Align2::CENTER_BOTTOM, text, font(), tokens.text);
 }
 
-/// A scale of colours at the top right.
-#[derive(Clone, Debug)]
-pub(super) struct ColorBar<'a> {
-    pub(super) map: ColorMap,
-    pub(super) title: &'a str,
-    /// Values in equal steps, from the top.
-    pub(super) ticks: [String; 5],
-}
-
-impl ColorBar<'_> {
-    /// Draws it.
-    pub(super) fn draw(&self, painter: &Painter, rect: Rect, tokens: &Tokens) {
-        let height = (rect.height() * 0.4).clamp(80.0, 240.0);
-        let top = pos2(rect.right() - MARGIN - 60.0, rect.top() + MARGIN + 22.0);
-        let bar = Rect::from_min_size(top, vec2(14.0, height));
-        let title = pos2(rect.right() - MARGIN, rect.top() + MARGIN - 2.0);
-        lettering(painter, title, Align2::RIGHT_TOP, self.title, tokens.text, tokens);
-        ground(painter, Rect::from_min_max(bar.min - vec2(2.0, 4.0), bar.max + vec2(62.0, 4.0)), tokens);
-        let mut mesh = egui::Mesh::default();
-        const STEPS: u32 = 64;
-        for k in 0..=STEPS {
-            let t = k as f32 / STEPS as f32;
-            let [r, g, b] = colormap::color(self.map, 1.0 - t);
-            let y = bar.top() + t * height;
-            mesh.colored_vertex(pos2(bar.left(), y), Color32::from_rgb(r, g, b));
-            mesh.colored_vertex(pos2(bar.right(), y), Color32::from_rgb(r, g, b));
-            if k > 0 {
-                mesh.add_triangle(2 * k - 2, 2 * k - 1, 2 * k);
-                mesh.add_triangle(2 * k - 1, 2 * k + 1, 2 * k);
-            }
+fn draw_bar(bar: &Bar, painter: &Painter, rect: Rect, tokens: &Tokens) {
+    let height = (rect.height() * 0.4).clamp(80.0, 240.0);
+    let top = pos2(rect.right() - MARGIN - 60.0, rect.top() + MARGIN + 22.0);
+    let area = Rect::from_min_size(top, vec2(14.0, height));
+    let title = pos2(rect.right() - MARGIN, rect.top() + MARGIN - 2.0);
+    lettering(painter, title, Align2::RIGHT_TOP, bar.title.as_str(), tokens.text, tokens);
+    ground(painter, Rect::from_min_max(area.min - vec2(2.0, 4.0), area.max + vec2(62.0, 4.0)), tokens);
+    let mut mesh = egui::Mesh::default();
+    const STEPS: u32 = 64;
+    for k in 0..=STEPS {
+        let t = k as f32 / STEPS as f32;
+        let [r, g, b] = colormap::color(bar.map, 1.0 - t);
+        let y = area.top() + t * height;
+        mesh.colored_vertex(pos2(area.left(), y), Color32::from_rgb(r, g, b));
+        mesh.colored_vertex(pos2(area.right(), y), Color32::from_rgb(r, g, b));
+        if k > 0 {
+            mesh.add_triangle(2 * k - 2, 2 * k - 1, 2 * k);
+            mesh.add_triangle(2 * k - 1, 2 * k + 1, 2 * k);
         }
-        painter.add(mesh);
-        painter.rect_stroke(bar, 0.0, Stroke::new(1.0, tokens.text), StrokeKind::Outside);
-        for (k, text) in self.ticks.iter().enumerate() {
-            let y = bar.top() + k as f32 / 4.0 * height;
-            painter.line_segment([pos2(bar.right(), y), pos2(bar.right() + 4.0, y)], Stroke::new(1.0, tokens.text));
-            painter.text(pos2(bar.right() + 7.0, y), Align2::LEFT_CENTER, text, font(), tokens.text);
-        }
+    }
+    painter.add(mesh);
+    painter.rect_stroke(area, 0.0, Stroke::new(1.0, tokens.text), StrokeKind::Outside);
+    for (k, text) in bar.ticks.iter().enumerate() {
+        let y = area.top() + k as f32 / 4.0 * height;
+        painter.line_segment([pos2(area.right(), y), pos2(area.right() + 4.0, y)], Stroke::new(1.0, tokens.text));
+        painter.text(pos2(area.right() + 7.0, y), Align2::LEFT_CENTER, text, font(), tokens.text);
     }
 }
 
@@ -208,38 +209,19 @@ pub(super) fn legend<'a>(
     }
 }
 
-/// The box that is being drawn.
-pub(super) fn selection_box(ui: &Ui, from: Pos2, to: Pos2) {
-    let tokens = Tokens::here(ui);
-    let area = Rect::from_two_pos(from, to);
-    let fill = tokens.accent.gamma_multiply(0.15);
-    ui.painter().rect(area, 0.0, fill, Stroke::new(1.0, tokens.accent), StrokeKind::Inside);
-}
-
-/// How far the selection was moved, and the keys that bind the motion.
-pub(super) fn move_hint(ui: &Ui, rect: Rect, delta: DVec3, lock: Option<Lock>) {
-    let bound = match lock {
-        None => String::new(),
-        Some(Lock { axis, across: false }) => format!("   along {}", ["x", "y", "z"][axis]),
-        Some(Lock { axis, across: true }) => format!("   in the plane {}", ["y z", "x z", "x y"][axis]),
-    };
-    let DVec3 { x, y, z } = delta;
-    let keys = "X, Y, Z: along an axis (with Shift: in a plane)   Esc: cancel";
-    hint(ui, rect, &format!("Moved by {x:+.3}, {y:+.3}, {z:+.3} mm{bound}   {keys}"));
-}
-
 /// Number and place of the vertex under the pointer.
 pub(super) fn vertex_hint(ui: &Ui, rect: Rect, vertex: u32, pose: &Pose) {
     if let Some(at) = pose.vertices.get(vertex as usize) {
         let [x, y, z] = at.to_array().map(to_mm);
-        hint(ui, rect, &format!("Cage vertex {vertex} at {x:.3}, {y:.3}, {z:.3} mm: drag to move, Shift adds"));
+        hint(ui, rect, &format!("Cage vertex {vertex} at {x:.3}, {y:.3}, {z:.3} mm: drag or G moves, Shift adds"));
     }
 }
 
-/// One line at the bottom of the view, above the scale bar.
+/// A few words at the bottom of the view, above the scale bar.
 pub(super) fn hint(ui: &Ui, rect: Rect, text: &str) {
     let tokens = Tokens::here(ui);
-    let galley = ui.painter().layout_no_wrap(text.to_owned(), font(), tokens.text);
+    let width = (rect.width() - 2.0 * MARGIN - 16.0).max(60.0);
+    let galley = ui.painter().layout(text.to_owned(), font(), tokens.text, width);
     let at = pos2(rect.center().x - galley.size().x / 2.0, rect.bottom() - HINT_HEIGHT - galley.size().y);
     let back = Rect::from_min_size(at, galley.size()).expand2(vec2(8.0, 4.0));
     ui.painter().rect_filled(back, 4.0, tokens.panel);
@@ -247,13 +229,14 @@ pub(super) fn hint(ui: &Ui, rect: Rect, text: &str) {
 }
 
 /// The painted value under the pointer.
-pub(super) fn value_hint(ui: &Ui, view: &View, surface: &Surface, pointer: Pos2, at: Vec2, state: &UiState) {
+pub(super) fn value_hint(ui: &Ui, view: &View, surface: &Surface, pointer: Pos2, at: Vec2, heat: Heat) {
     if surface.scalars.is_none() || ui.input(|i| i.pointer.any_down()) {
         return;
     }
-    let Some(value) = surface_at(view, surface, at).and_then(|hit| hit.value) else { return };
+    let hit = surface_at(view, surface, at).filter(|hit| surface.parts[hit.part].paint == Paint::Heat);
+    let Some(value) = hit.and_then(|hit| hit.value) else { return };
     let tokens = Tokens::here(ui);
-    let text = format!("{} {value:+.2} %", state.heat.text());
+    let text = format!("{} {}", heat.text(), heat.value_text(value));
     let galley = ui.painter().layout_no_wrap(text, font(), tokens.text);
     let place = pointer + vec2(14.0, 10.0);
     ui.painter().rect_filled(Rect::from_min_size(place, galley.size()).expand(4.0), 3.0, tokens.panel);

@@ -163,7 +163,7 @@ fn plot(ui: &mut Ui, steps: &[CompensationStep], mode: CompensationMode) {
     let colors = colors(Tokens::here(ui));
     let isometric = mode == CompensationMode::Isometric;
     let last = steps.len().saturating_sub(1) as f64;
-    Plot::new("convergence")
+    let shown = Plot::new("convergence")
         .height(140.0)
         .allow_scroll(false)
         .allow_zoom(false)
@@ -186,6 +186,8 @@ fn plot(ui: &mut Ui, steps: &[CompensationStep], mode: CompensationMode) {
                 plot.points(Points::new(measure.name, PlotPoints::from(points)).color(color).radius(2.5));
             }
         });
+    let name = "Errors over the iterations";
+    shown.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, name));
 }
 
 /// A fraction as signed percent without the sign of percent, which stands over the table.

@@ -2,19 +2,26 @@
 
 use super::session::Session;
 use super::theme::Tokens;
-use super::ui_state::{Heat, UiState};
+use super::ui_state::UiState;
 use crate::distortion::Figures;
+use crate::geometry::DVec3;
 use crate::units::to_mm;
-use egui::{ComboBox, DragValue, Grid, RichText, Ui};
+use egui::{Grid, RichText, Ui};
 
 /// How far a relative error may go before it is marked, as a fraction: good below the first, bad above the second.
 const MARKS: [f64; 2] = [0.005, 0.02];
+
+/// Places listed where a shape crosses itself: the others lie beside them.
+const MAX_LISTED: usize = 6;
+/// Distance of the eye from such a place, mm.
+const NEAR: f32 = 12.0;
 
 /// Height of the rows of tables that hold text alone, points.
 pub(super) const ROW_HEIGHT: f32 = 16.0;
 
 /// Draws the panel.
 pub(super) fn ui(ui: &mut Ui, session: &Session, state: &mut UiState) {
+    crossings(ui, session.crossings_mm(), state);
     let Some(shown) = session.shown() else {
         let text =
             if session.is_busy() { "Computing the deformed antenna…" } else { "There is no deformed antenna yet." };
@@ -33,19 +40,40 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, state: &mut UiState) {
         }
     });
     table(ui, &deformed.figures, deformed.ideal.as_ref());
-    ui.add_space(4.0);
-    heat_choice(ui, state);
+}
+
+/// Tells where a refused shape crosses itself, with a button that goes there.
+fn crossings(ui: &mut Ui, places_mm: &[[f64; 3]], state: &mut UiState) {
+    if places_mm.is_empty() {
+        return;
+    }
+    let text = "The refused shape crosses itself at the marked places:";
+    ui.add(egui::Label::new(RichText::new(text).color(Tokens::here(ui).error)).wrap());
+    ui.horizontal_wrapped(|ui| {
+        for (k, &[x, y, z]) in places_mm.iter().enumerate().take(MAX_LISTED) {
+            let button = ui.small_button(format!("{x:.1}, {y:.1}, {z:.1} mm"));
+            if button.on_hover_text(format!("Look at place {}", k + 1)).clicked() {
+                state.show_mesh(false);
+                state.fit = false;
+                state.camera.target = DVec3::new(x, y, z).as_vec3();
+                state.camera.distance = NEAR;
+            }
+        }
+        if places_mm.len() > MAX_LISTED {
+            ui.label(RichText::new(format!("and {} more", places_mm.len() - MAX_LISTED)).weak());
+        }
+    });
 }
 
 /// One line of the table: name, tooltip, text from figures, and the relative error that decides the colour.
-struct Line {
-    name: &'static str,
-    tip: &'static str,
-    text: fn(&Figures) -> Option<String>,
-    error: fn(&Figures) -> Option<f64>,
+pub(super) struct Line {
+    pub(super) name: &'static str,
+    pub(super) tip: &'static str,
+    pub(super) text: fn(&Figures) -> Option<String>,
+    pub(super) error: fn(&Figures) -> Option<f64>,
 }
 
-const LINES: [Line; 14] = [
+pub(super) const LINES: [Line; 14] = [
     Line {
         name: "ρ patch",
         tip: "Surface of the patch over that of the flat one, minus 1",
@@ -132,6 +160,17 @@ const LINES: [Line; 14] = [
     },
 ];
 
+/// Colours a figure by its relative error.
+pub(super) fn mark(text: RichText, error: Option<f64>, tokens: &Tokens) -> RichText {
+    let [good, bad] = MARKS;
+    match error.map(f64::abs) {
+        None => text,
+        Some(error) if error <= good => text.color(tokens.good),
+        Some(error) if error <= bad => text.color(tokens.warning),
+        Some(_) => text.color(tokens.error),
+    }
+}
+
 fn table(ui: &mut Ui, figures: &Figures, ideal: Option<&Figures>) {
     let tokens = Tokens::here(ui);
     let columns = if ideal.is_some() { 3 } else { 2 };
@@ -149,19 +188,7 @@ fn table(ui: &mut Ui, figures: &Figures, ideal: Option<&Figures>) {
                 // A figure that this shape does not have keeps its row, so that nothing jumps during a drag.
                 let text = (line.text)(figures).unwrap_or_else(|| "–".to_owned());
                 ui.label(line.name).on_hover_text(line.tip);
-                let mut text = RichText::new(text);
-                if let Some(error) = (line.error)(figures) {
-                    let beyond = error.abs();
-                    let [good, bad] = MARKS;
-                    text = text.color(if beyond <= good {
-                        tokens.good
-                    } else if beyond <= bad {
-                        tokens.warning
-                    } else {
-                        tokens.error
-                    });
-                }
-                ui.label(text);
+                ui.label(mark(RichText::new(text), (line.error)(figures), tokens));
                 if let Some(ideal) = ideal {
                     ui.label(RichText::new((line.text)(ideal).unwrap_or_default()).color(tokens.weak));
                 }
@@ -169,33 +196,6 @@ fn table(ui: &mut Ui, figures: &Figures, ideal: Option<&Figures>) {
             }
         },
     );
-}
-
-fn heat_choice(ui: &mut Ui, state: &mut UiState) {
-    ui.horizontal(|ui| {
-        let label = ui.label("Paint");
-        let combo = ComboBox::from_id_salt("heat").selected_text(state.heat.text()).show_ui(ui, |ui| {
-            for heat in Heat::ALL {
-                ui.selectable_value(&mut state.heat, heat, heat.text());
-            }
-        });
-        combo.response.labelled_by(label.id).on_hover_text("What the colours of the antenna show");
-    });
-    if state.heat == Heat::None {
-        return;
-    }
-    ui.horizontal(|ui| {
-        let mut locked = state.heat_range.is_some();
-        let tip = "Keep the ends of the colour bar; without it they follow the patch's largest value";
-        if ui.checkbox(&mut locked, "Fixed range").on_hover_text(tip).changed() {
-            state.heat_range = locked.then_some(10.0);
-        }
-        if let Some(range) = &mut state.heat_range {
-            let input = DragValue::new(range).range(0.01..=1000.0).speed(0.05).prefix("±").suffix(" %");
-            let response = ui.add(input).on_hover_text("Half range of the colour bar");
-            response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, "Half range in percent"));
-        }
-    });
 }
 
 /// A fraction as signed percent.

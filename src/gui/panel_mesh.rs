@@ -259,6 +259,8 @@ fn histogram(ui: &mut Ui, cells: &CellStatistics, out: &mut Outbox) {
         .show_x(false)
         .show_y(false)
         .show(ui, |plot| plot.bar_chart(BarChart::new("cells", bars).color(accent)));
+    let name = "Cells by their smallest dihedral angle";
+    plot.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, name));
     plot_export::menu(&plot.response, PlotKind::MeshAngles, out);
     let Some(pointer) = plot.response.hover_pos() else { return };
     let bin = (plot.transform.value_from_position(pointer).x / width).max(0.0) as usize;

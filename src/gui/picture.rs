@@ -1,6 +1,7 @@
 //! The view as a picture, where no window opens.
 
-use super::scene::{Hot, SceneBuilder};
+use super::heat::OnShow;
+use super::scene::{Hot, SceneBuilder, Subject};
 use super::session::Session;
 use super::theme::Tokens;
 use super::ui_state::UiState;
@@ -24,8 +25,9 @@ pub fn picture(project: &Project, deformed: &Deformed) -> anyhow::Result<Option<
     let mut session = Session::showing(project.clone(), deformed.clone());
     let state = UiState::default();
     let pose = session.pose().cloned();
-    let scene =
-        SceneBuilder::default().scene(&session, pose.as_ref(), &state, Tokens::of(Theme::Light), Hot::default());
+    let on_show = session.shown().map(|s| OnShow { deformed: &s.deformed, serial: s.serial });
+    let subject = Subject { on_show, drawn: &project.antenna, pose: pose.as_ref(), is_fixed: false };
+    let scene = SceneBuilder::default().scene(subject, &state, Tokens::of(Theme::Light), Hot::default());
     let points = scene.lines.iter().flat_map(|l| l.positions.iter());
     let start = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     let (lo, hi) = points.fold(start, |(lo, hi), p| (lo.min(*p), hi.max(*p)));

@@ -2,6 +2,7 @@
 
 use super::app::App;
 use super::dialogs::Dialog;
+use super::heat::N_BINS;
 use super::plot_export::PlotExport;
 use super::polar;
 use super::solve_session::FinishedRun;
@@ -20,11 +21,13 @@ pub(super) enum PlotKind {
     Smith,
     Cuts,
     MeshAngles,
+    Distortion,
 }
 
 impl PlotKind {
     /// All of them, in the order of the choice.
-    pub(super) const ALL: [Self; 5] = [Self::Magnitude, Self::Phase, Self::Smith, Self::Cuts, Self::MeshAngles];
+    pub(super) const ALL: [Self; 6] =
+        [Self::Magnitude, Self::Phase, Self::Smith, Self::Cuts, Self::MeshAngles, Self::Distortion];
 
     /// Its name in the choice.
     pub(super) fn text(self) -> &'static str {
@@ -33,6 +36,7 @@ impl PlotKind {
             Self::Phase => "Phase of S11 over frequency",
             Self::Smith => "Smith chart",
             Self::Cuts => "Pattern in the E and H planes",
+            Self::Distortion => "Histogram of the distortion",
             Self::MeshAngles => "Cells by dihedral angle",
         }
     }
@@ -47,8 +51,10 @@ fn on_paper(series: usize) -> [u8; 3] {
 impl App {
     /// Asks where to save a plot, beginning with the kind named or the one on show.
     pub(super) fn ask_plot(&mut self, kind: Option<PlotKind>) {
-        let plots: Vec<(PlotKind, Plot)> =
-            PlotKind::ALL.into_iter().filter_map(|kind| Some((kind, self.plot(kind)?))).collect();
+        let mut plots: Vec<(PlotKind, Plot)> = Vec::new();
+        for kind in PlotKind::ALL {
+            plots.extend(self.plot(kind).map(|plot| (kind, plot)));
+        }
         let kind = kind.unwrap_or_else(|| on_show(&self.state));
         if let Some(dialog) = PlotExport::new(plots, kind, &self.folder(), &self.session.name()) {
             self.dialog = Dialog::PlotExport(Box::new(dialog));
@@ -56,7 +62,7 @@ impl App {
     }
 
     /// A plot of what is on show; `None` where there is nothing to plot.
-    fn plot(&self, kind: PlotKind) -> Option<Plot> {
+    fn plot(&mut self, kind: PlotKind) -> Option<Plot> {
         let name = self.session.name();
         let runs: Vec<&FinishedRun> = self.solve.shown().collect();
         let reflections: Vec<Reflection<'_>> = runs
@@ -78,6 +84,21 @@ impl App {
                 let in_parts = chosen.polarization == Polarization::Parts;
                 (!cuts.is_empty()).then(|| charts::cuts(&title, &cuts, chosen.range_db, in_parts))
             }
+            PlotKind::Distortion => {
+                let on_show = self.compare.on_show_or(&self.session, self.state.preview);
+                let (heat, part) = (self.state.heat, self.state.heat_part);
+                let heated = self.viewport.heated(on_show, &self.state)?;
+                let [lo, hi] = self.state.heat_range(heated.auto);
+                let title = format!("{}, {}, {name}", heat.text(), part.text().to_lowercase());
+                let step = f64::from(hi - lo) / N_BINS as f64;
+                Some(histogram(
+                    "distortion",
+                    &title,
+                    [heat.axis(), "area (%)"],
+                    [f64::from(lo), step],
+                    &heated.bins([lo, hi]),
+                ))
+            }
             PlotKind::MeshAngles => {
                 let bins = self.mesh.shown()?.ready.meshed.quality.whole.histogram;
                 let counts: Vec<f64> = bins.iter().map(|&n| n as f64).collect();
@@ -95,6 +116,7 @@ fn on_show(state: &UiState) -> PlotKind {
         (true, ResultTab::Pattern, _) => PlotKind::Cuts,
         (true, ResultTab::Reflection, Curve::Phase) => PlotKind::Phase,
         (false, ..) if state.right_tab == RightTab::Mesh => PlotKind::MeshAngles,
+        (false, ..) if state.right_tab == RightTab::Figures => PlotKind::Distortion,
         _ => PlotKind::Magnitude,
     }
 }

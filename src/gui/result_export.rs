@@ -1,16 +1,15 @@
 //! Export of a run's curves as one file for other programs.
 
-use super::dialogs::{PathField, Purpose, problem_with};
 use super::outbox::{Action, Outbox};
+use super::plot_export::{FileField, Pressed};
 use super::solve_session::{FinishedRun, SolveSession};
 use super::status::Weight;
-use super::theme::Tokens;
 use super::ui_state::UiState;
 use crate::io::{csv, touchstone};
 use crate::pipeline::solve_job::RunResult;
 use crate::units::GHZ;
-use egui::{ComboBox, RichText, Ui};
-use std::path::{Path, PathBuf};
+use egui::{ComboBox, Ui};
+use std::path::Path;
 
 /// What is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -84,9 +83,7 @@ pub(super) struct ResultExport {
     runs: Vec<FinishedRun>,
     chosen: usize,
     format: Format,
-    field: PathField,
-    overwrite: Option<PathBuf>,
-    failed: Option<String>,
+    file: FileField,
 }
 
 impl ResultExport {
@@ -95,14 +92,7 @@ impl ResultExport {
         let runs = solve.runs().to_vec();
         let format = Format::Touchstone;
         let path = folder.join(name).with_extension(format.ending());
-        Some(Self {
-            chosen: runs.len().checked_sub(1)?,
-            runs,
-            format,
-            field: PathField::new(Purpose::Data, path.display().to_string()),
-            overwrite: None,
-            failed: None,
-        })
+        Some(Self { chosen: runs.len().checked_sub(1)?, runs, format, file: FileField::new(&path) })
     }
 
     /// Draws the dialog; true when it is to be closed.
@@ -132,48 +122,27 @@ impl ResultExport {
         if self.format == Format::Cuts && !has_patterns {
             self.format = Format::Touchstone;
         }
-        if self.format.ending() != before.ending() && self.field.path().file_name().is_some() {
-            self.field.text = self.field.path().with_extension(self.format.ending()).display().to_string();
+        if self.format.ending() != before.ending() {
+            self.file.rename("", "", self.format.ending());
         }
         ui.add_space(6.0);
-        let go = self.field.ui(ui, "File");
-        self.buttons(ui, go, state, out)
+        match self.file.ui(ui, "Export") {
+            Pressed::Nothing => false,
+            Pressed::Cancel => true,
+            Pressed::Go(path) => self.export(&path, state, out),
+        }
     }
 
-    fn buttons(&mut self, ui: &mut Ui, mut go: bool, state: &mut UiState, out: &mut Outbox) -> bool {
-        let path = self.field.path();
-        let problem = problem_with(&path, true);
-        let tokens = Tokens::here(ui);
-        if let Some(problem) = problem {
-            ui.label(RichText::new(problem).weak());
-        } else if self.overwrite.as_ref() == Some(&path) {
-            ui.colored_label(tokens.warning, "This file exists: press again to replace it.");
-        }
-        if let Some(failed) = &self.failed {
-            ui.add(egui::Label::new(RichText::new(failed).color(tokens.error)).wrap());
-        }
-        ui.add_space(8.0);
-        let mut close = false;
-        ui.horizontal(|ui| {
-            go |= ui.add_enabled(problem.is_none(), egui::Button::new("Export")).clicked();
-            close = ui.button("Cancel").clicked();
-        });
-        if !go || problem.is_some() {
-            return close;
-        }
-        if path.exists() && self.overwrite.as_ref() != Some(&path) {
-            self.overwrite = Some(path);
-            return close;
-        }
-        match self.format.write(&self.runs[self.chosen], &path) {
+    fn export(&mut self, path: &Path, state: &mut UiState, out: &mut Outbox) -> bool {
+        match self.format.write(&self.runs[self.chosen], path) {
             Ok(()) => {
                 out.push(Action::Say(Weight::Good, format!("Exported the results: {}", path.display())));
                 state.last_folder = path.parent().map(Path::to_owned);
                 true
             }
             Err(error) => {
-                self.failed = Some(format!("{error:#}"));
-                close
+                self.file.failed = Some(format!("{error:#}"));
+                false
             }
         }
     }

@@ -3,17 +3,16 @@
 //! Lists are made anew only when what they come from has changed; everything else is shared with the last picture, so
 //! that a drag uploads positions and nothing else.
 
-use super::session::{Pose, Session};
+use super::heat::{self, Heated, OnShow};
+use super::session::Pose;
 use super::theme::Tokens;
-use super::ui_state::{Heat, UiState};
+use super::ui_state::{Heat, HeatPart, UiState};
 use crate::antenna::{COAX, GROUND, PATCH, PIN, SUBSTRATE, flat_complex};
 use crate::geometry::{DVec3, Plc, RegionId, VertexId};
-use crate::pipeline::Fields;
 use crate::project::AntennaSpec;
 use crate::render::scene::{crease_edges, unique_edges};
 use crate::render::{
-    Array, ColorMap, Gizmo, GizmoPart, Grid, HandleState, Handles, Lines, Paint, Part, Rgba, Scalars, Scene, Surface,
-    Vec3,
+    Array, Gizmo, GizmoPart, Grid, HandleState, Handles, Lines, Paint, Part, Rgba, Scalars, Scene, Surface, Vec3,
 };
 use crate::units::to_mm;
 use egui::Color32;
@@ -21,9 +20,8 @@ use std::sync::Arc;
 
 /// Folds sharper than this are drawn as outlines, degrees: more than a bent facet turns, less than a pin's polygon.
 const CREASE_DEG: f32 = 20.0;
-/// Least half range of the colour bar, percent: below it, rounding noise would be painted as blotches at rest.
-const LEAST_RANGE: f32 = 0.01;
-
+/// How much of the exact cylinder is seen where it is drawn through the antenna.
+const GHOST_OPACITY: f32 = 0.28;
 /// Makes scenes and keeps what can be used again.
 #[derive(Debug, Default)]
 pub(super) struct SceneBuilder {
@@ -33,7 +31,8 @@ pub(super) struct SceneBuilder {
     drawn: Option<(AntennaSpec, Arc<Plc>)>,
     /// By the answer's number and the complex's address.
     positions: Option<((u64, usize), Array<Vec3>)>,
-    heat: Option<(u64, Heat, Heated)>,
+    heat: Option<((u64, Heat, HeatPart), Heated)>,
+    ghost: Option<(u64, Array<Vec3>)>,
     cage: Option<(u64, CageShape)>,
     states: Option<(Vec<HandleState>, Array<HandleState>)>,
 }
@@ -41,17 +40,9 @@ pub(super) struct SceneBuilder {
 #[derive(Clone, Debug)]
 struct Shape {
     parts: Vec<(String, Array<[u32; 3]>)>,
-    /// Vertices of the patch's two planes, not of its thin walls, which the bend itself strains: they set the range of
-    /// the colour bar.
-    patch_planes: Array<u32>,
     creases: Array<[u32; 2]>,
-}
-
-/// A scalar field in percent and its greatest magnitude on the patch.
-#[derive(Clone, Debug)]
-struct Heated {
-    values: Array<f32>,
-    greatest: f32,
+    /// Those of substrate and patch.
+    carried_creases: Array<[u32; 2]>,
 }
 
 #[derive(Clone, Debug)]
@@ -78,24 +69,33 @@ pub(super) fn rgba(color: Color32) -> Rgba {
     color.to_srgba_unmultiplied()
 }
 
+/// What is drawn.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Subject<'a> {
+    /// The computed antenna.
+    pub(super) on_show: Option<OnShow<'a>>,
+    /// The antenna as drawn, for as long as nothing is computed.
+    pub(super) drawn: &'a AntennaSpec,
+    pub(super) pose: Option<&'a Pose>,
+    /// Whether the cage's vertices can be taken hold of.
+    pub(super) is_fixed: bool,
+}
+
 impl SceneBuilder {
-    /// Makes the picture of a session.
-    pub(super) fn scene(
-        &mut self,
-        session: &Session,
-        pose: Option<&Pose>,
-        state: &UiState,
-        tokens: &Tokens,
-        hot: Hot,
-    ) -> Scene {
+    /// Makes the picture of a subject.
+    pub(super) fn scene(&mut self, subject: Subject<'_>, state: &UiState, tokens: &Tokens, hot: Hot) -> Scene {
         let mut scene = Scene { background: rgba(tokens.viewport), ..Scene::default() };
         let mut lowest = 0.0_f32;
-        if let Some((surface, creases)) = self.antenna(session, state, tokens) {
+        if let Some((surface, creases)) = self.antenna(subject, state, tokens) {
             lowest = surface.positions.iter().map(|p| p.z).fold(lowest, f32::min);
             scene.lines.push(creases);
             scene.surfaces.push(surface);
         }
-        if let Some(pose) = pose.filter(|_| state.shows_cage) {
+        if let Some((surface, creases)) = subject.on_show.and_then(|shown| self.ghost(shown, state, tokens)) {
+            scene.lines.push(creases);
+            scene.surfaces.push(surface);
+        }
+        if let Some(pose) = subject.pose.filter(|_| state.shows_cage) {
             let cage = self.cage(pose);
             lowest = cage.positions.iter().map(|p| p.z).fold(lowest, f32::min);
             let [r, g, b, _] = rgba(tokens.cage);
@@ -106,8 +106,10 @@ impl SceneBuilder {
                 width: 1.1,
                 hidden: 0.35,
             });
-            scene.gizmo = gizmo(&cage.handles, state, tokens, hot);
-            scene.handles = Some(self.handles(cage.handles, state, tokens, hot));
+            if !subject.is_fixed {
+                scene.gizmo = gizmo(&cage.handles, state, tokens, hot);
+                scene.handles = Some(self.handles(cage.handles, state, tokens, hot));
+            }
         }
         let [r, g, b, _] = rgba(tokens.grid);
         let axes = [rgba(tokens.axes[0]), rgba(tokens.axes[1])];
@@ -117,17 +119,45 @@ impl SceneBuilder {
         scene
     }
 
-    /// Half range of the colour bar in percent, if something is painted.
-    pub(super) fn range(&self, state: &UiState) -> Option<f32> {
-        let (_, heat, heated) = self.heat.as_ref()?;
-        (*heat == state.heat).then(|| state.heat_range.unwrap_or(heated.greatest).max(LEAST_RANGE))
+    /// What is painted on an antenna, if anything is and the antenna has it.
+    pub(super) fn heated(&mut self, shown: OnShow<'_>, state: &UiState) -> Option<&Heated> {
+        let key = (shown.serial, state.heat, state.heat_part);
+        if self.heat.as_ref().is_none_or(|(k, _)| *k != key) {
+            let shape = self.shape(&shown.deformed.flat);
+            let regions = shape.parts.iter().map(|(name, triangles)| (name.as_str(), &triangles[..]));
+            let heated = Heated::new(state.heat, state.heat_part, shown.deformed, regions)?;
+            self.heat = Some((key, heated));
+        }
+        self.heat.as_ref().map(|(_, heated)| heated)
     }
 
-    fn antenna(&mut self, session: &Session, state: &UiState, tokens: &Tokens) -> Option<(Surface, Lines)> {
-        let drawn = if session.shown().is_none() { self.drawn_flat(&session.project().antenna) } else { None };
-        let (serial, flat, points, fields) = match (session.shown(), &drawn) {
-            (Some(s), _) => (s.serial, Arc::clone(&s.deformed.flat), &s.deformed.positions, Some(&s.deformed.fields)),
-            (None, Some(flat)) => (0, Arc::clone(flat), &flat.vertices, None),
+    /// The exact cylinder's substrate and patch, where it is to be seen.
+    fn ghost(&mut self, shown: OnShow<'_>, state: &UiState, tokens: &Tokens) -> Option<(Surface, Lines)> {
+        if !state.shows_ghost {
+            return None;
+        }
+        if self.ghost.as_ref().is_none_or(|(serial, _)| *serial != shown.serial) {
+            self.ghost = Some((shown.serial, Array::new(heat::ghost(shown.deformed)?)));
+        }
+        let positions = self.ghost.as_ref()?.1.clone();
+        let shape = self.shape(&shown.deformed.flat);
+        let color = rgba(tokens.ideal);
+        // Over painted parts its outlines alone are drawn: a veil would falsify the colours.
+        let is_veil = state.heat == Heat::None;
+        let parts = shape.parts.iter().filter(|(name, _)| is_veil && matches!(name.as_str(), SUBSTRATE | PATCH));
+        let parts = parts
+            .map(|(_, triangles)| Part { opacity: GHOST_OPACITY, ..Part::new(triangles.clone(), Paint::Matt(color)) });
+        let surface = Surface { positions: positions.clone(), parts: parts.collect(), scalars: None };
+        let creases = Lines { positions, edges: shape.carried_creases, color, width: 1.3, hidden: 0.45 };
+        Some((surface, creases))
+    }
+
+    fn antenna(&mut self, subject: Subject<'_>, state: &UiState, tokens: &Tokens) -> Option<(Surface, Lines)> {
+        let shown = subject.on_show;
+        let drawn = if shown.is_none() { self.drawn_flat(subject.drawn) } else { None };
+        let (serial, flat, points) = match (shown, &drawn) {
+            (Some(OnShow { deformed, serial }), _) => (serial, Arc::clone(&deformed.flat), &deformed.positions),
+            (None, Some(flat)) => (0, Arc::clone(flat), &flat.vertices),
             (None, None) => return None,
         };
         let key = (serial, Arc::as_ptr(&flat) as usize);
@@ -136,11 +166,11 @@ impl SceneBuilder {
         }
         let positions = self.positions.as_ref()?.1.clone();
         let shape = self.shape(&flat);
-        let scalars = fields.and_then(|fields| self.scalars(serial, fields, &shape, state));
+        let scalars = shown.and_then(|shown| self.scalars(shown, state));
         let see_through = state.sees_through;
         let parts = shape.parts.iter().map(|(name, triangles)| {
-            let carried = matches!(name.as_str(), SUBSTRATE | PATCH | GROUND);
-            let paint = if scalars.is_some() && carried { Paint::Heat } else { paint_of(name, tokens) };
+            let paint =
+                if scalars.is_some() && state.heat_part.paints(name) { Paint::Heat } else { paint_of(name, tokens) };
             let opacity = if see_through && name == SUBSTRATE { 0.35 } else { 1.0 };
             Part { opacity, ..Part::new(triangles.clone(), paint) }
         });
@@ -166,22 +196,9 @@ impl SceneBuilder {
         self.shape.as_ref().map(|(_, shape)| shape.clone()).unwrap_or_else(|| Shape::of(flat))
     }
 
-    fn scalars(&mut self, serial: u64, fields: &Fields, shape: &Shape, state: &UiState) -> Option<Scalars> {
-        let source = match state.heat {
-            Heat::None => return None,
-            Heat::Area => &fields.area_ratio,
-            Heat::MaxStrain => &fields.stretch_max,
-            Heat::MinStrain => &fields.stretch_min,
-        };
-        if self.heat.as_ref().is_none_or(|(s, h, _)| *s != serial || *h != state.heat) {
-            let values: Vec<f32> = source.iter().map(|v| (100.0 * (v - 1.0)) as f32).collect();
-            let on_patch = shape.patch_planes.iter().filter_map(|&v| values.get(v as usize)).filter(|v| v.is_finite());
-            let greatest = on_patch.fold(0.0_f32, |m, v| m.max(v.abs()));
-            self.heat = Some((serial, state.heat, Heated { values: Array::new(values), greatest }));
-        }
-        let range = self.range(state)?;
-        let values = self.heat.as_ref()?.2.values.clone();
-        Some(Scalars { values, range: [-range, range], map: ColorMap::CoolWarm })
+    fn scalars(&mut self, shown: OnShow<'_>, state: &UiState) -> Option<Scalars> {
+        let heated = self.heated(shown, state)?;
+        Some(Scalars { values: heated.values.clone(), range: state.heat_range(heated.auto), map: state.heat.map() })
     }
 
     fn cage(&mut self, pose: &Pose) -> CageShape {
@@ -275,14 +292,15 @@ impl Shape {
         }
         let parts: Vec<(String, Array<[u32; 3]>)> =
             parts.into_iter().map(|(name, triangles)| (name, Array::new(triangles))).collect();
-        let level = |t: &&[u32; 3]| {
-            let [a, b, c] = t.map(|v| flat.vertices[v as usize].z);
-            (a - b).abs().max((a - c).abs()) <= 0.0
-        };
-        let patch = parts.iter().filter(|(name, _)| name == PATCH).flat_map(|(_, triangles)| triangles.iter());
-        let patch_planes = Array::new(patch.filter(level).flatten().copied().collect::<Vec<u32>>());
         let creases = crease_edges(&to_picture(&flat.vertices), &all, CREASE_DEG);
-        Self { parts, patch_planes, creases: Array::new(if creases.is_empty() { unique_edges(&all) } else { creases }) }
+        let creases = if creases.is_empty() { unique_edges(&all) } else { creases };
+        let mut is_carried = vec![false; flat.vertices.len()];
+        let carried = parts.iter().filter(|(name, _)| matches!(name.as_str(), SUBSTRATE | PATCH));
+        for &v in carried.flat_map(|(_, triangles)| triangles.iter().flatten()) {
+            is_carried[v as usize] = true;
+        }
+        let carried = creases.iter().filter(|e| e.iter().all(|&v| is_carried[v as usize])).copied();
+        Self { parts, carried_creases: Array::new(carried.collect::<Vec<_>>()), creases: Array::new(creases) }
     }
 }
 

@@ -5,13 +5,15 @@
 //! generation are dropped, a refused request leaves the last good geometry on show, and a drag whose result is refused
 //! is undone.
 
+use super::hand_edits::micrometres;
+use super::play::Play;
 use crate::cage::Cage;
 use crate::geometry::DVec3;
 use crate::pipeline::worker::{Quality, Reply, Worker};
 use crate::pipeline::{Deformed, PipelineError};
 use crate::project::{Edit, EditError, Example, History, Project};
 use crate::task::Progress;
-use crate::units::{from_mm, to_mm};
+use crate::units::from_mm;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -22,6 +24,8 @@ pub(super) struct Shown {
     pub(super) project: Project,
     /// Counts the replies shown, so that pictures know when to change.
     pub(super) serial: u64,
+    /// Whether it is a part of the deformation, for looking only.
+    is_part: bool,
 }
 
 /// The posed cage as drawn.
@@ -49,6 +53,7 @@ struct Sent {
     quality: Quality,
     generation: u64,
     answered: bool,
+    is_part: bool,
 }
 
 /// The open project.
@@ -62,9 +67,12 @@ pub(super) struct Session {
     shown: Option<Shown>,
     pose: Option<(Project, Pose)>,
     refused: Option<String>,
+    /// Where the last refused shape crosses itself, mm; until something is changed.
+    crossings_mm: Vec<[f64; 3]>,
     in_gesture: bool,
     guarded: bool,
     serial: u64,
+    play: Play,
 }
 
 /// What the window starts with: the paper's antenna, bent so that there is something to see.
@@ -84,15 +92,17 @@ impl Session {
             shown: None,
             pose: None,
             refused: None,
+            crossings_mm: Vec::new(),
             in_gesture: false,
             guarded: false,
             serial: 0,
+            play: Play::default(),
         }
     }
 
     /// A session that shows what was computed elsewhere and computes nothing itself.
     pub(super) fn showing(project: Project, deformed: Deformed) -> Self {
-        let shown = Shown { deformed, project: project.clone(), serial: 1 };
+        let shown = Shown { deformed, project: project.clone(), serial: 1, is_part: false };
         Self { shown: Some(shown), ..Self::new(project, None, Worker::spawn(|| ())) }
     }
 
@@ -122,6 +132,11 @@ impl Session {
         self.refused.as_deref()
     }
 
+    /// Where the last refused shape crosses itself, mm.
+    pub(super) fn crossings_mm(&self) -> &[[f64; 3]] {
+        &self.crossings_mm
+    }
+
     /// Whether a gesture is under way.
     pub(super) fn in_gesture(&self) -> bool {
         self.in_gesture
@@ -137,8 +152,33 @@ impl Session {
         self.worker.progress()
     }
 
+    /// How much of the deformation is shown.
+    pub(super) fn play(&self) -> Play {
+        self.play
+    }
+
+    /// Whether a part of the deformation can be shown: previews go on from one that is computed in full.
+    pub(super) fn can_play(&self) -> bool {
+        let project = self.project();
+        let is_deformed = !project.active_presets().is_empty() || !project.hand_edits.is_empty();
+        is_deformed && (self.play.is_on() || self.finished().is_some())
+    }
+
+    /// Shows a part of the deformation, if it can be; any change of the project ends that.
+    pub(super) fn show(&mut self, play: Play) {
+        if self.can_play() && !self.in_gesture {
+            self.play = play;
+        }
+    }
+
+    /// The project as it is looked at.
+    fn viewed(&self) -> Project {
+        self.project().at_amount(self.play.amount)
+    }
+
     /// Begins a gesture.
     pub(super) fn begin(&mut self) {
+        self.play = Play::default();
         self.history.begin();
         self.in_gesture = true;
     }
@@ -148,7 +188,7 @@ impl Session {
     pub(super) fn end(&mut self) -> Option<News> {
         let refused = self.refused.take();
         if refused.is_some()
-            && let Some(shown) = &self.shown
+            && let Some(shown) = self.shown.as_ref().filter(|s| !s.is_part)
         {
             let target = shown.project.clone();
             self.head_for(&target);
@@ -168,6 +208,8 @@ impl Session {
     /// Changes the project.
     pub(super) fn apply(&mut self, edit: Edit) -> Result<(), EditError> {
         self.guarded = false;
+        self.crossings_mm.clear();
+        self.play = Play::default();
         self.history.apply(edit)
     }
 
@@ -188,6 +230,8 @@ impl Session {
 
     fn step(&mut self, step: impl FnOnce(&mut History) -> bool) {
         step(&mut self.history);
+        self.crossings_mm.clear();
+        self.play = Play::default();
         self.in_gesture = false;
         self.guarded = false;
     }
@@ -195,7 +239,9 @@ impl Session {
     /// Starts over with another project.
     pub(super) fn replace(&mut self, project: Project, path: Option<PathBuf>) {
         self.history.replace(project);
+        self.play = Play::default();
         self.path = path;
+        self.crossings_mm.clear();
         self.in_gesture = false;
         self.guarded = false;
         self.refused = None;
@@ -235,9 +281,10 @@ impl Session {
     }
 
     fn send(&mut self) {
-        let quality = if self.in_gesture { Quality::Live } else { Quality::Full };
+        let quality = if self.in_gesture || self.play.is_on() { Quality::Live } else { Quality::Full };
+        let project = self.viewed();
         if let Some(sent) = &self.sent {
-            let same = sent.project == *self.history.project();
+            let same = sent.project == project;
             if same && (sent.quality == quality || quality == Quality::Live) {
                 return;
             }
@@ -246,9 +293,15 @@ impl Session {
                 return;
             }
         }
-        let project = self.history.project().clone();
         let generation = self.worker.request(project.clone(), quality);
-        self.sent = Some(Sent { project, quality, generation, answered: false });
+        let is_part = self.play.is_on();
+        self.sent = Some(Sent { project, quality, generation, answered: false, is_part });
+    }
+
+    /// The number of the last request.
+    #[cfg(test)]
+    pub(super) fn generation(&self) -> Option<u64> {
+        self.sent.as_ref().map(|s| s.generation)
     }
 
     /// Takes an answer of the worker.
@@ -261,12 +314,14 @@ impl Session {
                 self.guarded &= sent.quality == Quality::Live;
                 self.serial += 1;
                 let project = sent.project.clone();
-                self.shown = Some(Shown { deformed: *deformed, project, serial: self.serial });
+                let is_part = sent.is_part;
+                self.shown = Some(Shown { deformed: *deformed, project, serial: self.serial, is_part });
                 None
             }
             Err(PipelineError::Cancelled(_)) => None,
             Err(error) => {
                 let message = error.to_string();
+                self.crossings_mm = error.crossings_mm().to_vec();
                 let is_full = sent.quality == Quality::Full;
                 if is_full && std::mem::take(&mut self.guarded) && sent.project == *self.history.project() {
                     self.take_back(reply.retreat.as_deref());
@@ -306,7 +361,7 @@ impl Session {
     /// The cage to draw: the computed one moved by the hand edits made since, or else the one that presets and hand
     /// edits give; the last possible one where they give none.
     pub(super) fn pose(&mut self) -> Option<&Pose> {
-        let project = self.history.project();
+        let project = &self.viewed();
         let shown_serial = self.shown.as_ref().map_or(0, |s| s.serial);
         let is_new = self.pose.as_ref().is_none_or(|(p, pose)| p != project || pose.serial >> 32 != shown_serial);
         if is_new {
@@ -354,24 +409,6 @@ fn add_offsets<'a>(handles: &mut [DVec3], edits: impl Iterator<Item = (&'a u32, 
             *handle += sign * DVec3::from_array(offset_mm.map(from_mm));
         }
     }
-}
-
-/// The edit that moves vertices by `delta_mm` from offsets noted earlier; offsets are kept to the micrometre.
-pub(super) fn move_edit(start: &[(u32, [f64; 3])], delta_mm: DVec3) -> Edit {
-    let moved = |offset: [f64; 3]| (DVec3::from_array(offset) + delta_mm).to_array().map(micrometres);
-    Edit::MoveVertices(start.iter().map(|&(v, offset)| (v, moved(offset))).collect())
-}
-
-/// The edit that puts one vertex, now at `at` (m), to `target_mm` along `axis`.
-pub(super) fn place_edit(project: &Project, vertex: u32, at: DVec3, axis: usize, target_mm: f64) -> Edit {
-    let mut offset = project.hand_edits.get(&vertex).copied().unwrap_or_default();
-    offset[axis] = micrometres(offset[axis] + target_mm - to_mm(at[axis]));
-    Edit::MoveVertices(vec![(vertex, offset)])
-}
-
-/// Rounds to a micrometre: what a pointer can mean, and numbers that read well in the file. Never gives -0.
-fn micrometres(value_mm: f64) -> f64 {
-    (value_mm * 1e3).round() / 1e3 + 0.0
 }
 
 #[cfg(test)]
@@ -426,15 +463,5 @@ mod tests {
         assert!(matches!(session.receive(answer), Some(News::Refused(_))), "said");
         assert_ne!(*session.project(), first_project(), "a typed number stays to be corrected");
         assert!(session.refusal().is_some(), "and the reason stays on show");
-    }
-
-    #[test]
-    fn moved_offsets_are_whole_micrometres_and_never_minus_zero() {
-        let Edit::MoveVertices(moved) = move_edit(&[(7, [1.0, 0.0, 0.0])], DVec3::new(0.000_4, -0.000_2, 1.234_56))
-        else {
-            panic!("another edit");
-        };
-        assert_eq!(moved, [(7, [1.0, 0.0, 1.235])], "rounded");
-        assert!(moved[0].1[1].is_sign_positive(), "plain zero");
     }
 }

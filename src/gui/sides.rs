@@ -5,7 +5,10 @@ use super::command::{Command, Facts};
 use super::field::Refused;
 use super::outbox::Outbox;
 use super::ui_state::{RightTab, Tab};
-use super::{panel_antenna, panel_cage, panel_compensation, panel_distortion, panel_history, panel_mesh, panel_solve};
+use super::{
+    panel_antenna, panel_cage, panel_compare, panel_compensation, panel_distortion, panel_heat, panel_history,
+    panel_mesh, panel_solve,
+};
 use egui::{Panel, Rect, ScrollArea, Ui};
 
 /// Widths of the side panels, points: all inputs fit, and 1280 points leave the view the larger half.
@@ -60,6 +63,15 @@ impl App {
                     RightTab::Figures => {
                         ui.heading("Distortion");
                         panel_distortion::ui(ui, &self.session, &mut self.state);
+                        ui.add_space(4.0);
+                        let on_show = self.compare.on_show_or(&self.session, self.state.preview);
+                        let has_cylinder = on_show.is_some_and(|s| !s.deformed.fields.on_cylinder.is_empty());
+                        let heated = self.viewport.heated(on_show, &self.state).cloned();
+                        panel_heat::ui(ui, heated.as_ref(), has_cylinder, &mut self.state, out);
+                        ui.add_space(6.0);
+                        ui.separator();
+                        ui.heading("Before and after");
+                        panel_compare::ui(ui, self.session.project(), &self.compare, facts, &mut self.state, out);
                         ui.add_space(6.0);
                         ui.separator();
                         ui.heading("Compensation");

@@ -3,15 +3,14 @@
 //! Nothing here draws. Finished runs stay until they are removed or another project is opened, even when the project
 //! has gone on or a new run fails or is called off; whether one still fits is a comparison of projects.
 
-use super::mesh_session::{density_text, grouped};
+use super::mesh_session::grouped;
 use super::theme::N_SERIES;
 use super::ui_state::{SolveUi, Stop};
 use crate::io::IoError;
 use crate::pipeline::solve_job::{LiveRun, RunResult, SolveJob, SolveRequest};
-use crate::pipeline::{
-    Density, Estimate, Job, MeshSettings, Shape, SolveSettings, StopRule, Stored, estimate, results_dir,
-};
-use crate::project::{BendPlane, CompensationMode, PresetSpec, Project};
+use crate::pipeline::{Estimate, Job, MeshSettings, SolveSettings, StopRule, Stored, estimate, results_dir};
+use crate::project::Project;
+use crate::report::job_name as name;
 use crate::task::Progress;
 use crate::tet::Metal;
 use crate::units::GHZ;
@@ -274,39 +273,12 @@ pub(super) fn request(project: &Project, chosen: &SolveUi) -> SolveRequest {
     SolveRequest::new(project.clone(), chosen.shape, settings)
 }
 
-/// What a run is called: its shape, and the density where it is not the usual one.
-fn name(job: &Job) -> String {
-    let project = job.project();
-    let active: Vec<&PresetSpec> = project.presets.iter().filter(|p| p.enabled).map(|p| &p.preset).collect();
-    let bend = match active[..] {
-        [PresetSpec::Bend { plane, radius_mm, .. }] if project.hand_edits.is_empty() => {
-            let plane = if *plane == BendPlane::E { "E" } else { "H" };
-            Some(format!("R {radius_mm} {plane}"))
-        }
-        _ => None,
-    };
-    let shape = match (job.shape(), bend) {
-        (Shape::Flat, _) => "Flat".to_owned(),
-        (Shape::Cylinder, bend) => format!("Cylinder {}", bend.unwrap_or_default()),
-        (Shape::Deformed, bend) => {
-            let how = match project.settings.compensation {
-                CompensationMode::None => "raw",
-                CompensationMode::Wl => "WL",
-                CompensationMode::Isometric => "isometric",
-            };
-            format!("{}, {how}", bend.unwrap_or_else(|| "Deformed".to_owned()))
-        }
-    };
-    match job.settings().mesh.density {
-        Density::Default => shape,
-        other => format!("{shape}, {}", density_text(other).0.to_lowercase()),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::gui::session::first_project;
+    use crate::pipeline::{Density, Shape};
+    use crate::project::CompensationMode;
 
     #[test]
     fn a_run_is_named_after_what_was_solved() {

@@ -172,13 +172,17 @@ pub(super) fn ui(ui: &mut Ui, workers: Workers<'_>, messages: &Messages, state: 
 /// What the thread that deforms the antenna does.
 fn deformation(ui: &mut Ui, session: &Session, out: &mut Outbox) {
     let tokens = Tokens::here(ui);
-    if session.is_busy() && !session.in_gesture() {
+    let play = session.play();
+    if session.is_busy() && !session.in_gesture() && !play.is_on() {
         busy(ui, "Deforming", session.progress(), Action::StopWork, out);
     } else if let Some(message) = session.refusal() {
         let text = RichText::new(format!("⚠ {message}")).color(tokens.error);
         ui.add(egui::Label::new(text).truncate()).on_hover_text(message);
+    } else if play.is_on() {
+        let text = format!("{:.0} % of the deformation, for looking only", 100.0 * play.amount);
+        ui.label(RichText::new(text).color(tokens.warning));
     } else if session.in_gesture() {
-        ui.label(RichText::new("Preview: computed in full when you let go").color(tokens.weak));
+        ui.label(RichText::new("Preview: computed in full at the end").color(tokens.weak));
     } else if session.finished().is_some() {
         ui.label(RichText::new("Ready").color(tokens.good));
     } else {

@@ -36,22 +36,22 @@ pub(super) fn project(window: &Window) -> Project {
     window.state().session.project().clone()
 }
 
-fn vertex_place(window: &Window, vertex: usize) -> Pos2 {
+pub(super) fn vertex_place(window: &Window, vertex: usize) -> Pos2 {
     window.get_by_label(&format!("Cage vertex {vertex}")).rect().center()
 }
 
-fn button(window: &mut Window, at: Pos2, pressed: bool, modifiers: Modifiers) {
+pub(super) fn button(window: &mut Window, at: Pos2, pressed: bool, modifiers: Modifiers) {
     window.event(Event::PointerButton { pos: at, button: PointerButton::Primary, pressed, modifiers });
     window.step();
 }
 
-fn move_to(window: &mut Window, at: Pos2) {
+pub(super) fn move_to(window: &mut Window, at: Pos2) {
     window.event(Event::PointerMoved(at));
     window.step();
 }
 
 /// Presses at `from` and moves to `to` in steps, one event per frame; the button stays down.
-fn drag(window: &mut Window, from: Pos2, to: Pos2) {
+pub(super) fn drag(window: &mut Window, from: Pos2, to: Pos2) {
     move_to(window, from);
     button(window, from, true, Modifiers::NONE);
     for k in 1..=5u8 {
@@ -59,13 +59,13 @@ fn drag(window: &mut Window, from: Pos2, to: Pos2) {
     }
 }
 
-fn drop(window: &mut Window, at: Pos2) {
+pub(super) fn drop(window: &mut Window, at: Pos2) {
     button(window, at, false, Modifiers::NONE);
     settle(window);
 }
 
 /// The vertex with the most room around it, away from the border of the view.
-fn lone_vertex(window: &Window) -> usize {
+pub(super) fn lone_vertex(window: &Window) -> usize {
     let count = window.state().session.project().cage.n_handles();
     let places: Vec<Pos2> = (0..count).map(|v| vertex_place(window, v)).collect();
     let gap = |v: usize| {
@@ -247,6 +247,7 @@ fn compensation_converges_and_is_listed() {
     let shown = window.state().session.finished().expect("computed in full");
     assert!(shown.figures.patch_strain < 0.005, "strain {}", shown.figures.patch_strain);
     assert!(shown.compensation.len() > 1, "each iteration is reported");
+    assert_eq!(super::tests_shell::unnamed(&window), Vec::<String>::new(), "every control has a name");
     window.get_by_label("WL").click();
     settle(&mut window);
     assert_eq!(project(&window).settings.compensation, CompensationMode::Wl, "chosen in the panel");

@@ -5,6 +5,7 @@ use super::mesh_scene::{Look, MeshScene};
 use super::outbox::Action;
 use super::scene::rgba;
 use super::tests::{Window, lay_out, project, settle, wait_for, window};
+use super::tests_shell::unnamed;
 use super::theme::Tokens;
 use super::ui_state::{MeshPaint, RightTab};
 use crate::pipeline::{Density, Shape};
@@ -64,6 +65,7 @@ fn the_panel_meshes_and_shows_what_came_of_it() {
     window.get_by_label(&super::mesh_session::grouped(shown.ready.meshed.mesh.tets.len()));
     assert!(window.state().messages.texts().any(|m| m.starts_with("Meshed:")), "and it was said");
     assert!(window.query_by_label("Cage vertex 0").is_none(), "no cage in the view of the mesh");
+    assert_eq!(unnamed(&window), Vec::<String>::new(), "every control of mesh and histogram has a name");
     window.key_press(Key::V);
     window.run_steps(2);
     assert!(window.query_by_label("Cage vertex 0").is_some(), "the antenna in its cage is back");

@@ -4,7 +4,7 @@ use super::command::{Command, Facts};
 use super::dialogs::Dialog;
 use super::outbox::Action;
 use super::tests::{Window, lay_out, settle, window};
-use super::ui_state::{RightTab, Tab};
+use super::ui_state::{ResultTab, RightTab, Tab};
 use crate::project::Example;
 use egui::accesskit::{self, Role};
 use egui::{Event, Key, Modifiers, RawInput};
@@ -23,6 +23,9 @@ fn everything() -> Facts {
         has_results: true,
         has_pattern: true,
         compensates: true,
+        has_cylinder: true,
+        shows_cage: true,
+        can_play: true,
         ..Facts::default()
     }
 }
@@ -61,7 +64,7 @@ fn the_palette_runs_what_is_chosen_with_the_keys() {
     settle(&mut window);
     assert!(window.query_by_label("Find a command").is_none(), "closed");
     assert!(!window.state().state.selection.is_empty(), "all vertices are selected");
-    assert_eq!(window.state().state.recent_commands, ["Edit: Select all vertices"], "remembered");
+    assert_eq!(window.state().state.recent_commands, ["Select: Select all vertices"], "remembered");
     open_palette(&mut window, "redo");
     window.key_press(Key::Enter);
     lay_out(&mut window);
@@ -73,7 +76,7 @@ fn the_palette_runs_what_is_chosen_with_the_keys() {
 }
 
 /// The controls on show that have no name for a screen reader.
-fn unnamed<S>(window: &Harness<'_, S>) -> Vec<String> {
+pub(super) fn unnamed<S>(window: &Harness<'_, S>) -> Vec<String> {
     let nodes = window.root().children_recursive().map(|node| node.accesskit_node());
     let nameless = nodes.filter(|node| {
         // Edges of panels are told by their role and their value; egui gives them no name.
@@ -140,6 +143,17 @@ fn every_control_has_a_name_for_screen_readers() {
         lay_out(&mut window);
     }
     assert!(faults.is_empty(), "{} without a name:\n{}", faults.len(), faults.join("\n"));
+}
+
+#[test]
+fn every_control_of_the_results_has_a_name() {
+    let mut window = super::tests_solve::solved();
+    window.state_mut().state.right_tab = RightTab::Solve;
+    for tab in [ResultTab::Reflection, ResultTab::Pattern] {
+        window.state_mut().state.solve.tab = tab;
+        lay_out(&mut window);
+        assert_eq!(unnamed(&window), Vec::<String>::new(), "{tab:?}");
+    }
 }
 
 #[test]

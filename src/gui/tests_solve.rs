@@ -73,7 +73,7 @@ fn lobe(freq: f64) -> FarField {
 }
 
 /// A window with made-up results of the flat and the bent antenna.
-fn solved() -> Window {
+pub(super) fn solved() -> Window {
     let mut window = window();
     add(&mut window, Shape::Flat, 10.8 * GHZ);
     add(&mut window, Shape::Deformed, 11.1 * GHZ);

@@ -49,6 +49,8 @@ pub(super) struct Tokens {
     pub(super) signal: Color32,
     /// Outlines of the antenna's parts.
     pub(super) crease: Color32,
+    /// The exact cylinder drawn through the antenna.
+    pub(super) ideal: Color32,
     /// Lines of the cage.
     pub(super) cage: Color32,
     /// Cage vertices: normal, hovered, selected, locked; and their rim.
@@ -86,6 +88,7 @@ static DARK: Tokens = Tokens {
     mesh_edge: rgb(18, 22, 30),
     signal: rgb(255, 64, 160),
     crease: rgb(24, 26, 30),
+    ideal: rgb(120, 226, 150),
     cage: rgb(120, 178, 240),
     handles: [rgb(206, 224, 246), rgb(255, 226, 120), rgb(255, 158, 44), rgb(120, 124, 130)],
     handle_rim: rgb(20, 26, 34),
@@ -126,6 +129,7 @@ static LIGHT: Tokens = Tokens {
     mesh_edge: rgb(40, 56, 82),
     signal: rgb(214, 0, 120),
     crease: rgb(60, 64, 72),
+    ideal: rgb(10, 130, 60),
     cage: rgb(26, 92, 172),
     handles: [rgb(255, 255, 255), rgb(255, 208, 60), rgb(240, 122, 0), rgb(160, 165, 172)],
     handle_rim: rgb(26, 72, 136),

@@ -1,6 +1,9 @@
 //! What the user looks at and has selected: never part of a project, never undone, kept between runs.
 
+use super::edit_ui::EditUi;
+use super::play::Play;
 use crate::pipeline::{Density, Shape};
+use crate::project::CompensationMode;
 use crate::render::{Camera, Projection, Vec3};
 use crate::tet::Metal;
 use egui::ThemePreference;
@@ -35,11 +38,16 @@ pub(super) enum Heat {
     MaxStrain,
     /// Smaller principal stretch, minus 1.
     MinStrain,
+    /// Thickness of the substrate over the one drawn, minus 1.
+    Thickness,
+    /// Distance from the exact cylinder.
+    Distance,
 }
 
 impl Heat {
     /// All of them, in the order of the choice.
-    pub(super) const ALL: [Self; 4] = [Self::None, Self::Area, Self::MaxStrain, Self::MinStrain];
+    pub(super) const ALL: [Self; 6] =
+        [Self::None, Self::Area, Self::MaxStrain, Self::MinStrain, Self::Thickness, Self::Distance];
 
     /// Name in the choice and over the colour bar.
     pub(super) fn text(self) -> &'static str {
@@ -48,6 +56,58 @@ impl Heat {
             Self::Area => "Area change",
             Self::MaxStrain => "Greatest strain",
             Self::MinStrain => "Smallest strain",
+            Self::Thickness => "Thickness change",
+            Self::Distance => "Off cylinder",
+        }
+    }
+
+    /// What it means.
+    pub(super) fn tip(self) -> &'static str {
+        match self {
+            Self::None => "Show what the parts are made of",
+            Self::Area => "Area over flat area, minus 1",
+            Self::MaxStrain => "Greater principal stretch, minus 1",
+            Self::MinStrain => "Smaller principal stretch, minus 1",
+            Self::Thickness => "Thickness of the substrate over the one drawn, minus 1",
+            Self::Distance => "Distance from the exact cylinder, shifted along z to lie nearest",
+        }
+    }
+
+    /// Label of an axis of its values.
+    pub(super) fn axis(self) -> &'static str {
+        match self {
+            Self::None => "",
+            Self::Area => "Area change (%)",
+            Self::MaxStrain => "Greatest strain (%)",
+            Self::MinStrain => "Smallest strain (%)",
+            Self::Thickness => "Thickness change (%)",
+            Self::Distance => "Distance from the cylinder (µm)",
+        }
+    }
+}
+
+/// Which parts are painted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) enum HeatPart {
+    /// Substrate, patch and ground.
+    #[default]
+    All,
+    Patch,
+    Substrate,
+    Ground,
+}
+
+impl HeatPart {
+    /// All of them, in the order of the choice.
+    pub(super) const ALL: [Self; 4] = [Self::All, Self::Patch, Self::Substrate, Self::Ground];
+
+    /// Name in the choice.
+    pub(super) fn text(self) -> &'static str {
+        match self {
+            Self::All => "All parts",
+            Self::Patch => "Patch",
+            Self::Substrate => "Substrate",
+            Self::Ground => "Ground",
         }
     }
 }
@@ -240,8 +300,14 @@ pub(super) struct UiState {
     pub(super) right_tab: RightTab,
     pub(super) theme: ThemePreference,
     pub(super) heat: Heat,
-    /// Half range of the colour bar in percent, where the user fixed it.
-    pub(super) heat_range: Option<f32>,
+    pub(super) heat_part: HeatPart,
+    /// Ends of the colour bar in the unit of what is painted, where the user fixed them.
+    pub(super) heat_ends: Option<[f32; 2]>,
+    /// Whether the exact cylinder is drawn through the antenna.
+    pub(super) shows_ghost: bool,
+    /// The way of compensation that is looked at instead of the project's own.
+    #[serde(skip)]
+    pub(super) preview: Option<CompensationMode>,
     /// Size of the interface, as a factor.
     pub(super) scale: f32,
     pub(super) shows_left: bool,
@@ -268,12 +334,16 @@ pub(super) struct UiState {
     camera_kept: Option<SavedCamera>,
     pub(super) mesh: MeshUi,
     pub(super) solve: SolveUi,
+    pub(super) editing: EditUi,
+    /// How much of the deformation is shown.
+    #[serde(skip)]
+    pub(super) play: Play,
+    /// Whether a part of it can be shown.
+    #[serde(skip)]
+    pub(super) can_play: bool,
     /// Selected cage vertices.
     #[serde(skip)]
     pub(super) selection: BTreeSet<u32>,
-    /// Whether the next drag on empty ground draws a box.
-    #[serde(skip)]
-    pub(super) selects_by_box: bool,
     #[serde(skip)]
     pub(super) camera: Camera,
     /// Asks the viewport to show all in the next frame.
@@ -291,7 +361,10 @@ impl Default for UiState {
             right_tab: RightTab::default(),
             theme: ThemePreference::System,
             heat: Heat::None,
-            heat_range: None,
+            heat_part: HeatPart::default(),
+            heat_ends: None,
+            shows_ghost: false,
+            preview: None,
             scale: 1.0,
             shows_left: true,
             shows_right: true,
@@ -309,8 +382,10 @@ impl Default for UiState {
             camera_kept: None,
             mesh: MeshUi::default(),
             solve: SolveUi::default(),
+            editing: EditUi::default(),
+            play: Play::default(),
+            can_play: false,
             selection: BTreeSet::new(),
-            selects_by_box: false,
             camera: Camera::default(),
             fit: true,
             refused: None,
@@ -319,6 +394,11 @@ impl Default for UiState {
 }
 
 impl UiState {
+    /// Ends of the colour bar: the fixed ones where they are a range, else those that follow the values.
+    pub(super) fn heat_range(&self, auto: [f32; 2]) -> [f32; 2] {
+        self.heat_ends.filter(|[lo, hi]| lo < hi).unwrap_or(auto)
+    }
+
     /// Notes that a file was opened or saved.
     pub(super) fn note_recent(&mut self, path: &Path) {
         // Where the program starts next time is not known.
@@ -358,9 +438,10 @@ impl UiState {
         });
     }
 
-    /// Puts the camera where it was in the last run, if that is a possible place.
+    /// Puts the camera where it was in the last run, if that is a possible place, and corrects impossible numbers.
     pub(super) fn restore_camera(&mut self) {
         self.mesh.axis = self.mesh.axis.min(2);
+        self.editing.restore();
         let Some(kept) = self.camera_kept else { return };
         let numbers = [kept.yaw, kept.pitch, kept.distance];
         if numbers.iter().chain(&kept.target).all(|v| v.is_finite()) && kept.distance > 0.0 {

@@ -1,25 +1,35 @@
 //! The 3-D view: camera, picking and dragging cage vertices.
 //!
-//! What a drag does is decided where the button went down. A vertex or an arrow of the gizmo moves the selection, one
-//! undo step per drag, live; empty ground turns the view (left), slides it (middle, right or Shift) or draws a
-//! selection box (Ctrl, or after B). Places are points from the top left of the view.
+//! What a drag does is decided where the button went down. A vertex or an arrow of the gizmo moves the selection
+//! ([`super::operating`]), one undo step per drag, live; empty ground turns the view (left), slides it (middle, right or
+//! Shift) or draws an outline around vertices (Ctrl a lasso; after a command a box or a lasso). Operators that a command
+//! began are driven by the pointer until a click. Places are points from the top left of the view.
 
+use super::compare_session::mode_text;
+use super::edit_overlay;
+use super::edit_ui::Outline;
+use super::heat::{Bar, Heated, OnShow, ticks};
 use super::mesh_scene::MeshScene;
 use super::mesh_session::ShownMesh;
+use super::operating::{Operating, Outcome};
 use super::outbox::{Action, Outbox};
 use super::overlay;
 use super::paint::ScenePaint;
 use super::pattern_scene::{self, PatternScene};
-use super::scene::{Hot, SceneBuilder, gizmo, to_picture};
-use super::session::{Pose, Session, move_edit};
+use super::play::Play;
+use super::scene::{Hot, SceneBuilder, Subject, gizmo, to_picture};
+use super::selecting::Drawn;
+use super::session::{Pose, Session};
 use super::solve_session::SolveSession;
 use super::theme::Tokens;
-use super::ui_state::UiState;
+use super::ui_state::{MeshPaint, UiState};
+use super::view_export::Shot;
 use crate::geometry::DVec3;
-use crate::render::drag::{Motion, displacement};
-use crate::render::pick::{gizmo_at, handle_at, handles_in};
-use crate::render::{Gizmo, GizmoPart, Scene, Vec2, Vec3, View};
-use egui::{CursorIcon, Key, Modifiers, PointerButton, Pos2, Rect, Response, Role, Sense, Ui, WidgetInfo};
+use crate::project::CompensationMode;
+use crate::render::pick::{gizmo_at, handle_at};
+use crate::render::{Bound, Gizmo, GizmoPart, Operator, Scene, Vec2, Vec3, View};
+use egui::{Area, CursorIcon, EventFilter, Id, Key, Modifiers, Order, PointerButton, Pos2, Rect, Response, Role};
+use egui::{Sense, Ui, WidgetInfo};
 
 /// How far from a vertex a press still grabs it, points: a little more than its disc.
 const GRAB_RADIUS: f32 = 9.0;
@@ -29,57 +39,30 @@ const FIT_ROOM: f32 = 1.12;
 const ZOOM_PER_POINT: f32 = 0.002;
 
 /// What the pointer is doing.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 enum Drag {
     #[default]
     Nothing,
     Orbit,
     Pan,
-    Box {
-        from: Vec2,
-    },
-    Move(Move),
-    /// Called off; waits for the button to come up.
+    Outline(Drawn),
+    Operate(Box<Operating>),
+    /// Called off or applied; waits for the button to come up.
     Over,
-}
-
-/// Vertices being moved.
-#[derive(Clone, Debug)]
-struct Move {
-    /// Where the motion is measured, mm, and the press.
-    grabbed: Vec3,
-    from: Vec2,
-    /// What the press says, and what a key says instead.
-    free: Motion,
-    lock: Option<Lock>,
-    /// Offsets of the moved vertices at the start, mm.
-    start: Vec<(u32, [f64; 3])>,
-    delta: DVec3,
-}
-
-/// Axis or plane that a key has bound the motion to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Lock {
-    pub(super) axis: usize,
-    /// The plane across the axis instead of the axis.
-    pub(super) across: bool,
-}
-
-impl Lock {
-    fn motion(self) -> Motion {
-        let axis = Vec3::AXES[self.axis];
-        if self.across { Motion::Plane(axis) } else { Motion::Axis(axis) }
-    }
 }
 
 /// What the view remembers between frames.
 #[derive(Debug, Default)]
 pub(super) struct Viewport {
     drag: Drag,
+    /// The operator to begin with.
+    wanted: Option<Operator>,
     hot: Hot,
     builder: SceneBuilder,
     mesh: MeshScene,
     pattern: PatternScene,
+    /// What was drawn last.
+    shot: Option<Shot>,
 }
 
 /// What there is to be seen.
@@ -92,6 +75,9 @@ pub(super) struct Sources<'a> {
     pub(super) mesh: Option<&'a ShownMesh>,
     /// The runs whose pattern is drawn around the antenna.
     pub(super) solve: Option<&'a SolveSession>,
+    /// The computed antenna, and whether it is another one than the project's, which is only looked at.
+    pub(super) on_show: Option<OnShow<'a>>,
+    pub(super) preview: Option<CompensationMode>,
 }
 
 /// What a frame of the view works with.
@@ -100,6 +86,8 @@ struct Frame<'a> {
     pose: Option<&'a Pose>,
     mesh: Option<&'a ShownMesh>,
     solve: Option<&'a SolveSession>,
+    on_show: Option<OnShow<'a>>,
+    preview: Option<CompensationMode>,
     /// Handles in picture units.
     handles: &'a [Vec3],
     gizmo: Option<Gizmo>,
@@ -111,6 +99,30 @@ impl Frame<'_> {
     fn gizmo_at(&self, view: &View, at: Vec2) -> Option<(Vec3, GizmoPart)> {
         let gizmo = self.gizmo.as_ref()?;
         gizmo_at(view, gizmo, at).map(|part| (gizmo.center, part))
+    }
+
+    fn subject(&self) -> Subject<'_> {
+        let drawn = &self.session.project().antenna;
+        Subject { on_show: self.on_show, drawn, pose: self.pose, is_fixed: self.preview.is_some() }
+    }
+
+    /// Begins an operator on the selection; the side of the vertex `lead` leads where edits are mirrored.
+    fn operate(
+        &self,
+        operator: Operator,
+        lead: Option<u32>,
+        at: Vec2,
+        state: &UiState,
+        out: &mut Outbox,
+    ) -> Option<Operating> {
+        if state.play.is_on() {
+            // Vertices are moved from where they really are.
+            out.push(Action::Show(Play::default()));
+            return None;
+        }
+        let pose = self.pose.filter(|_| state.shows_cage)?;
+        let mirror = lead.map_or(state.editing.mirror(), |v| state.editing.mirror().led_by(&pose.cage, v));
+        Operating::begin(operator, (pose, self.session.project()), &state.selection, mirror, at, out)
     }
 
     fn local(&self, at: Pos2) -> Vec2 {
@@ -127,24 +139,29 @@ impl Frame<'_> {
 impl Viewport {
     /// Draws the view and turns what the pointer does into wishes.
     pub(super) fn ui(&mut self, ui: &mut Ui, sources: Sources<'_>, state: &mut UiState, out: &mut Outbox) {
-        let Sources { session, mesh, .. } = sources;
+        let Sources { session, mesh, on_show, preview, .. } = sources;
         let solve = sources.solve.filter(|_| mesh.is_none());
         // The cage is neither seen nor grabbed while the mesh is shown.
         let pose = sources.pose.filter(|_| mesh.is_none());
         let rect = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(rect, Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "3-D view"));
-        let handles = match pose.filter(|_| state.shows_cage) {
+        let handles = match pose.filter(|_| state.shows_cage && preview.is_none()) {
             Some(pose) => to_picture(&pose.vertices[..pose.cage.n_handles().min(pose.vertices.len())]),
             None => Vec::new(),
         };
         state.selection.retain(|&v| pose.is_none_or(|p| (v as usize) < p.cage.n_handles()));
         let gizmo = gizmo(&handles, state, Tokens::here(ui), self.hot);
-        let frame = Frame { session, pose, mesh, solve, handles: &handles, gizmo, rect };
+        let frame = Frame { session, pose, mesh, solve, on_show, preview, handles: &handles, gizmo, rect };
         if std::mem::take(&mut state.fit) {
             self.fit(ui, &frame, state);
         }
+        if matches!(self.drag, Drag::Operate(_)) && !session.in_gesture() {
+            // Something else ended it: what it began from is gone.
+            self.drag = Drag::Over;
+        }
         self.hover(ui, &response, &frame, state);
+        self.start_wanted(ui, &response, &frame, state, out);
         self.start(ui, &response, &frame, state, out);
         self.go_on(ui, &response, &frame, state, out);
         self.click(ui, &response, &frame, state);
@@ -153,7 +170,12 @@ impl Viewport {
         self.overlay(ui, &response, &frame, state, &scene);
     }
 
-    /// True while the pointer holds something.
+    /// Begins an operator on the selection with the next frame.
+    pub(super) fn begin(&mut self, operator: Operator) {
+        self.wanted = Some(operator);
+    }
+
+    /// True while the pointer holds something or an operator runs: keys belong to that.
     pub(super) fn is_dragging(&self) -> bool {
         !matches!(self.drag, Drag::Nothing)
     }
@@ -179,7 +201,7 @@ impl Viewport {
         match frame.mesh {
             Some(mesh) => self.mesh.scene(mesh, &state.mesh, tokens),
             None => {
-                let mut scene = self.builder.scene(frame.session, frame.pose, state, tokens, self.hot);
+                let mut scene = self.builder.scene(frame.subject(), state, tokens, self.hot);
                 let antenna = scene.surfaces.iter().flat_map(|s| s.positions.iter());
                 let [lo, hi] =
                     antenna.fold([Vec3::INFINITY, Vec3::NEG_INFINITY], |[lo, hi], &p| [lo.min(p), hi.max(p)]);
@@ -204,7 +226,7 @@ impl Viewport {
         }
         if self.hot.gizmo.is_some() || self.hot.vertex.is_some() {
             ui.ctx().set_cursor_icon(CursorIcon::Grab);
-        } else if state.selects_by_box {
+        } else if state.editing.outline.is_some() {
             ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
         }
     }
@@ -222,15 +244,19 @@ impl Viewport {
         }
         let part = frame.gizmo_at(&view, from);
         let vertex = handle_at(&view, frame.handles, from, GRAB_RADIUS);
-        self.drag = if state.selects_by_box || modifiers.command {
-            state.selects_by_box = false;
-            Drag::Box { from }
+        let outline = state.editing.outline.take().or(modifiers.command.then_some(Outline::Lasso));
+        let operate = |grabbed: Vec3, lead: Option<u32>, bound: Bound, state: &UiState, out: &mut Outbox| {
+            let operating = frame.operate(Operator::Move, lead, from, state, out);
+            operating.map_or(Drag::Over, |o| Drag::Operate(Box::new(o.held(grabbed, bound))))
+        };
+        self.drag = if let Some(outline) = outline {
+            Drag::Outline(Drawn::new(outline, from))
         } else if let Some((center, part)) = part {
             self.hot.gizmo = Some(part);
-            begin_move(frame, state, center, from, part.axis().map_or(Motion::Screen, Motion::Axis), out)
-        } else if let Some(vertex) = vertex {
-            let grabbed = frame.handles[vertex];
-            let vertex = u32::try_from(vertex).unwrap_or(u32::MAX);
+            let axis = GizmoPart::ARROWS.iter().position(|arrow| *arrow == part);
+            operate(center, None, axis.map_or(Bound::Free, Bound::Axis), state, out)
+        } else if let Some(index) = vertex {
+            let vertex = u32::try_from(index).unwrap_or(u32::MAX);
             if !state.selection.contains(&vertex) {
                 if !modifiers.shift {
                     state.selection.clear();
@@ -238,7 +264,7 @@ impl Viewport {
                 state.selection.insert(vertex);
             }
             self.hot.vertex = Some(vertex);
-            begin_move(frame, state, grabbed, from, Motion::Screen, out)
+            operate(frame.handles[index], Some(vertex), Bound::Free, state, out)
         } else if modifiers.shift {
             Drag::Pan
         } else {
@@ -246,7 +272,20 @@ impl Viewport {
         };
     }
 
-    fn go_on(&mut self, ui: &Ui, response: &Response, frame: &Frame<'_>, state: &mut UiState, out: &mut Outbox) {
+    /// Begins the operator that a command asked for; the pointer then drives it without a button.
+    fn start_wanted(&mut self, ui: &Ui, response: &Response, frame: &Frame<'_>, state: &UiState, out: &mut Outbox) {
+        let Some(operator) = self.wanted.take().filter(|_| !self.is_dragging()) else { return };
+        // It begins with the next frame, when the whole deformation is shown again.
+        self.wanted = Some(operator).filter(|_| state.play.is_on());
+        let at = ui.input(|i| i.pointer.latest_pos()).map_or(frame.local(frame.rect.center()), |p| frame.local(p));
+        if let Some(operating) = frame.operate(operator, None, at, state, out) {
+            self.drag = Drag::Operate(Box::new(operating));
+            self.hot = Hot::default();
+            response.request_focus();
+        }
+    }
+
+    fn go_on(&mut self, ui: &mut Ui, response: &Response, frame: &Frame<'_>, state: &mut UiState, out: &mut Outbox) {
         let pointer = response.interact_pointer_pos().map(|p| frame.local(p));
         let mut view = frame.view(ui, state);
         match &mut self.drag {
@@ -257,37 +296,36 @@ impl Viewport {
                 view.pan(to_render(response.drag_delta()));
                 state.camera = view.camera;
             }
-            Drag::Box { from } => {
+            Drag::Outline(drawn) => {
                 if ui.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape)) {
                     self.drag = Drag::Over;
-                } else if let Some(to) = pointer.filter(|_| response.drag_stopped()) {
-                    let found = handles_in(&view, frame.handles, *from, to);
-                    if !ui.input(|i| i.modifiers.shift) {
-                        state.selection.clear();
+                } else if let Some(to) = pointer {
+                    drawn.extend(to);
+                    if response.drag_stopped() {
+                        drawn.select(&view, frame.handles, to, ui.input(|i| i.modifiers), state);
                     }
-                    state.selection.extend(found.into_iter().filter_map(|v| u32::try_from(v).ok()));
                 }
             }
-            Drag::Move(moving) => {
-                ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
-                if ui.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape)) {
-                    out.push(Action::Cancel);
-                    self.drag = Drag::Over;
-                } else {
-                    moving.go_on(ui, &view, pointer, out);
+            Drag::Operate(operating) => {
+                ui.ctx().set_cursor_icon(if operating.is_held { CursorIcon::Grabbing } else { CursorIcon::Move });
+                if !operating.is_held {
+                    hold_input(ui, response);
                 }
+                let pointer = ui.input(|i| i.pointer.latest_pos()).map(|p| frame.local(p));
+                if operating.go_on(ui, &view, pointer, &mut state.editing, out) == Outcome::Running {
+                    return;
+                }
+                self.drag = Drag::Over;
             }
         }
-        if response.drag_stopped() || !ui.input(|i| i.pointer.any_down()) {
-            if matches!(self.drag, Drag::Move(_)) {
-                out.push(Action::End);
-            }
+        if !ui.input(|i| i.pointer.any_down()) {
             self.drag = Drag::Nothing;
         }
     }
 
     fn click(&self, ui: &Ui, response: &Response, frame: &Frame<'_>, state: &mut UiState) {
-        let Some(at) = response.interact_pointer_pos().filter(|_| response.clicked()) else { return };
+        let at = response.interact_pointer_pos().filter(|_| response.clicked() && !self.is_dragging());
+        let Some(at) = at else { return };
         response.request_focus();
         let (view, at, shift) = (frame.view(ui, state), frame.local(at), ui.input(|i| i.modifiers.shift));
         let on_gizmo = frame.gizmo_at(&view, at).is_some_and(|(_, part)| part != GizmoPart::Center);
@@ -304,6 +342,9 @@ impl Viewport {
 
     fn zoom(&self, ui: &Ui, response: &Response, frame: &Frame<'_>, state: &mut UiState) {
         let Some(at) = response.hover_pos().filter(|_| response.contains_pointer()) else { return };
+        if matches!(self.drag, Drag::Operate(_)) && state.editing.is_proportional {
+            return;
+        }
         let (scroll, pinch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
         let factor = pinch * (ZOOM_PER_POINT * scroll).exp();
         let mut view = frame.view(ui, state);
@@ -319,28 +360,71 @@ impl Viewport {
         scene
     }
 
-    fn overlay(&self, ui: &Ui, response: &Response, frame: &Frame<'_>, state: &UiState, scene: &Scene) {
+    /// What is painted on the antenna on show.
+    pub(super) fn heated(&mut self, on_show: Option<OnShow<'_>>, state: &UiState) -> Option<&Heated> {
+        self.builder.heated(on_show?, state)
+    }
+
+    /// What was drawn last, to be drawn again as a picture.
+    pub(super) fn shot(&self) -> Option<&Shot> {
+        self.shot.as_ref()
+    }
+
+    /// The scales of colours that the picture needs.
+    fn bars(&mut self, frame: &Frame<'_>, state: &UiState) -> Vec<Bar> {
+        if frame.mesh.is_some() {
+            return (state.mesh.paint == MeshPaint::Angle).then(overlay::angle_bar).into_iter().collect();
+        }
+        let heated = frame.on_show.and_then(|shown| self.builder.heated(shown, state));
+        let heat = heated.map(|heated| Bar {
+            map: state.heat.map(),
+            title: state.heat.text().to_owned(),
+            ticks: ticks(state.heat, state.heat_range(heated.auto)),
+        });
+        let found = frame.solve.and_then(|solve| pattern_scene::pattern(solve, &state.solve));
+        let pattern = found.map(|(_, pattern)| {
+            overlay::pattern_bar(pattern.field.freq, pattern_scene::range(pattern, state.solve.range_db))
+        });
+        heat.into_iter().chain(pattern).collect()
+    }
+
+    fn overlay(&mut self, ui: &Ui, response: &Response, frame: &Frame<'_>, state: &UiState, scene: &Scene) {
         let view = frame.view(ui, state);
         name_vertices(ui, response, frame, state, &view);
-        let range = self.builder.range(state).filter(|_| frame.mesh.is_none());
-        overlay::draw(ui, frame.rect, &view, state, range);
-        if let Some((run, pattern)) = frame.solve.and_then(|solve| pattern_scene::pattern(solve, &state.solve)) {
-            let ends = pattern_scene::range(pattern, state.solve.range_db);
-            overlay::pattern(ui, frame.rect, (&run.name, pattern.field.freq), ends, range.is_some());
+        let bars = self.bars(frame, state);
+        overlay::draw(ui, frame.rect, &view);
+        overlay::bars(ui, frame.rect, &bars);
+        let tokens = Tokens::here(ui);
+        let [r, g, b, _] = tokens.text.to_array();
+        self.shot = Some(Shot { scene: scene.clone(), view, bars, ink: [r, g, b] });
+        if let Some(mode) = frame.preview {
+            let text = format!("Preview: {}. The project is not changed.", mode_text(mode));
+            overlay::note(ui, frame.rect, text, tokens.warning);
+        } else if let Some((run, _)) = frame.solve.and_then(|solve| pattern_scene::pattern(solve, &state.solve)) {
+            overlay::note(ui, frame.rect, format!("Pattern of {}", run.name), tokens.weak);
+        }
+        if frame.mesh.is_none() && frame.preview.is_none() {
+            let places = frame.session.crossings_mm().iter().map(|p| DVec3::from_array(*p).as_vec3());
+            overlay::crossings(ui, frame.rect, &view, places);
         }
         if let Some(mesh) = frame.mesh {
             let is_stale = mesh.is_stale(frame.session.project());
             overlay::mesh(ui, frame.rect, self.mesh.looks(), state.mesh.paint, is_stale);
         }
+        if let Some(pose) = frame.pose.filter(|_| state.shows_cage) {
+            edit_overlay::mirrors(ui, frame.rect, &view, (pose, frame.handles), state);
+        }
         match &self.drag {
-            Drag::Box { from } => {
+            Drag::Outline(drawn) => {
                 if let Some(to) = response.interact_pointer_pos() {
-                    overlay::selection_box(ui, frame.rect.min + egui::vec2(from.x, from.y), to);
+                    drawn.draw(ui, frame.rect, frame.local(to));
                 }
             }
-            Drag::Move(moving) => overlay::move_hint(ui, frame.rect, moving.delta, moving.lock),
-            _ if state.selects_by_box => {
-                overlay::hint(ui, frame.rect, "Drag a box around vertices; Shift adds, B ends")
+            Drag::Operate(operating) => edit_overlay::operator(ui, frame.rect, &view, operating, &state.editing),
+            Drag::Nothing if state.editing.outline.is_some() => {
+                if let Some(outline) = state.editing.outline {
+                    edit_overlay::outline_hint(ui, frame.rect, outline);
+                }
             }
             Drag::Nothing => {
                 let pointer = response.hover_pos().filter(|_| response.contains_pointer());
@@ -348,7 +432,7 @@ impl Viewport {
                 if let (Some(vertex), Some(pose)) = (hovered, frame.pose) {
                     overlay::vertex_hint(ui, frame.rect, vertex, pose);
                 } else if let (Some(at), Some(surface), None) = (pointer, scene.surfaces.first(), frame.mesh) {
-                    overlay::value_hint(ui, &view, surface, at, frame.local(at), state);
+                    overlay::value_hint(ui, &view, surface, at, frame.local(at), state.heat);
                 }
             }
             _ => {}
@@ -360,29 +444,14 @@ fn to_render(v: egui::Vec2) -> Vec2 {
     Vec2::new(v.x, v.y)
 }
 
-fn begin_move(frame: &Frame<'_>, state: &UiState, grabbed: Vec3, from: Vec2, free: Motion, out: &mut Outbox) -> Drag {
-    let edits = &frame.session.project().hand_edits;
-    let start = state.selection.iter().map(|&v| (v, edits.get(&v).copied().unwrap_or_default())).collect();
-    out.push(Action::Begin);
-    Drag::Move(Move { grabbed, from, free, lock: None, start, delta: DVec3::ZERO })
-}
-
-impl Move {
-    fn go_on(&mut self, ui: &Ui, view: &View, pointer: Option<Vec2>, out: &mut Outbox) {
-        for (axis, key) in [Key::X, Key::Y, Key::Z].into_iter().enumerate() {
-            let across = ui.input(|i| i.modifiers.shift);
-            if ui.input_mut(|i| i.consume_key(Modifiers::SHIFT, key) || i.consume_key(Modifiers::NONE, key)) {
-                let lock = Lock { axis, across };
-                self.lock = (self.lock != Some(lock)).then_some(lock);
-            }
-        }
-        let motion = self.lock.map_or(self.free, Lock::motion);
-        let moved = pointer.and_then(|to| displacement(view, self.grabbed, motion, self.from, to));
-        if let Some(delta) = moved.map(|d| d.as_dvec3()).filter(|d| d.is_finite() && *d != self.delta) {
-            self.delta = delta;
-            out.edit("hand edits", move_edit(&self.start, delta));
-        }
-    }
+/// Keeps pointer and keys from everything else for this frame: a click anywhere ends the operator, Tab goes on to its
+/// next number.
+fn hold_input(ui: &Ui, response: &Response) {
+    let filter = EventFilter { tab: true, horizontal_arrows: true, vertical_arrows: true, escape: true };
+    ui.memory_mut(|m| m.set_focus_lock_filter(response.id, filter));
+    let screen = ui.ctx().content_rect();
+    let cover = Area::new(Id::unique("operator")).order(Order::Foreground).fixed_pos(screen.min);
+    cover.show(ui.ctx(), |ui| ui.allocate_rect(screen, Sense::click_and_drag()));
 }
 
 /// Gives each vertex a name for screen readers and tests; the view itself handles the pointer.

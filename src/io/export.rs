@@ -70,6 +70,14 @@ pub fn export(plc: &Plc, dir: &Path, options: &ExportOptions) -> Result<Export, 
     Ok(Export { files, certificate })
 }
 
+/// The certificate of an export, without writing one.
+///
+/// # Errors
+/// As [`export`], but for those of the files.
+pub fn certify(plc: &Plc, options: &ExportOptions) -> Result<Certificate, IoError> {
+    bundle(plc, options).map(|(_, certificate)| certificate)
+}
+
 /// File names with their content.
 pub(super) type NamedFiles = Vec<(String, Vec<u8>)>;
 

@@ -54,7 +54,7 @@ mod tests;
 pub use atomic::{write_atomic, write_atomic_with};
 pub use certificate::{CERTIFICATE_FILE, Certificate, FileRecord, Material, Role, Sidecar, SolidRecord};
 pub use error::{IoError, ParseError, Place};
-pub use export::{Export, ExportOptions, GLTF_FILE, OBJ_FILE, export};
+pub use export::{Export, ExportOptions, GLTF_FILE, OBJ_FILE, certify, export};
 pub use import::import;
 pub use proof::{Fault, Finding};
 pub use verify::{Verification, verify};

@@ -66,19 +66,16 @@ pub enum PipelineError {
     },
     /// The deformed surface crosses itself.
     #[error(
-        "the deformed antenna crosses itself in {count} places, first {what} near ({x_mm:.2}, {y_mm:.2}, {z_mm:.2}) mm: bend less, or shorten the coaxial line"
+        "the deformed antenna crosses itself in {count} places, first {what} near ({:.2}, {:.2}, {:.2}) mm: bend less, or shorten the coaxial line",
+        places_mm[0][0], places_mm[0][1], places_mm[0][2]
     )]
     Crossing {
         /// Number of crossing pairs of triangles.
         count: usize,
         /// The parts that meet there.
         what: String,
-        /// x of the first place, mm.
-        x_mm: f64,
-        /// y of the first place, mm.
-        y_mm: f64,
-        /// z of the first place, mm.
-        z_mm: f64,
+        /// The places, mm: at least one, and not all where there are many.
+        places_mm: Vec<[f64; 3]>,
     },
     /// The antenna or the air around it cannot be meshed.
     #[error("mesh: {0}")]
@@ -92,6 +89,17 @@ pub enum PipelineError {
     /// Called off.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+}
+
+impl PipelineError {
+    /// Where the deformed surface crosses itself, if that is why there is none, mm.
+    #[must_use]
+    pub fn crossings_mm(&self) -> &[[f64; 3]] {
+        match self {
+            Self::Crossing { places_mm, .. } => places_mm,
+            _ => &[],
+        }
+    }
 }
 
 impl From<EncloseError> for PipelineError {

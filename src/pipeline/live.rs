@@ -6,7 +6,7 @@
 //! is finer, so that nothing jumps when the gesture begins.
 
 use super::PipelineError;
-use super::fields::Fields;
+use super::fields::{Columns, Fields};
 use super::scene::{Scene, same_rest};
 use super::stages::{Deformed, Stages};
 use crate::antenna::{PATCH, SUBSTRATE};
@@ -25,6 +25,9 @@ pub struct Live {
     stages: Stages,
     /// Weights of the surface's vertices: f32, for the picture only.
     vertices: PreviewWeights,
+    /// Places where the substrate's thickness is measured, and their weights.
+    columns: Columns,
+    thickness: PreviewWeights,
     /// Weights of the figures' samples: the patch's bottom plane, then the substrate's bottom under it.
     samples: GreenWeights,
     posed: Option<(Pose, Vec<[f32; 3]>)>,
@@ -47,7 +50,10 @@ impl Live {
             .map(|p| stages.compensated.warp.map(p))
             .collect();
         let samples = stages.scene.green.weights(&rest, task)?;
-        Ok(Self { project, stages, vertices, samples, posed: None })
+        let columns = Columns::new(&stages.reference, stages.scene.params.height);
+        let rest: Vec<DVec3> = columns.points.iter().map(|&p| stages.compensated.warp.map(p)).collect();
+        let thickness = stages.scene.green.weights(&rest, task)?.to_preview();
+        Ok(Self { project, stages, vertices, columns, thickness, samples, posed: None })
     }
 
     /// True if this preview can show the project: it differs in presets and hand edits only.
@@ -73,8 +79,14 @@ impl Live {
         let map = GreenMap::new(Arc::clone(&scene.green), pose.clone());
         let frame = feed_frame(&map, &self.stages.compensated.warp, &feed)?;
         sweep_line(&feed, &frame, &self.stages.placement, &mut positions)?;
-        let fields = Fields::new(&self.stages.deformed.flat, &self.stages.reference, &positions);
         let figures = self.figures(&scene, &self.samples.apply(&pose), &positions, project.settings.fit_orders);
+        let mut fields = Fields::new(&self.stages.deformed.flat, &self.stages.reference, &positions);
+        let images: Vec<DVec3> =
+            self.thickness.apply(&pose).into_iter().map(|p| glam::Vec3::from_array(p).as_dvec3()).collect();
+        fields.thickness = self.columns.ratios(&images);
+        if let (Some(cylinder), Some(distance)) = (scene.cylinder(), &figures.cylinder_distance) {
+            fields = fields.with_cylinder(&cylinder, distance.shift, &self.stages.reference);
+        }
         Ok(Deformed {
             cage: Arc::clone(&scene.cage),
             posed,

@@ -1,7 +1,7 @@
 //! The stages of the whole job, and their result.
 
 use super::PipelineError;
-use super::fields::Fields;
+use super::fields::{Columns, Fields};
 use super::scene::Scene;
 use crate::antenna::{PATCH, PatchParams, Resistor, flat_complex};
 use crate::cage::Cage;
@@ -98,10 +98,16 @@ pub fn run(project: &Project, task: &Task) -> Result<Stages, PipelineError> {
     let patch = sheet(compensated.patch_scale);
     let figures = measure(&scene.params, &patch, &sheet(DVec2::ONE), cylinder, orders)?;
     let ideal = cylinder.map(|c| measure(&scene.params, c, c, Some(c), orders)).transpose()?;
+    let mut fields = Fields::new(&surface.flat, &reference, &positions);
+    let columns = Columns::new(&reference, scene.params.height);
+    fields.thickness = columns.ratios(&sheet(DVec2::ONE).positions(&columns.points)?);
+    if let (Some(cylinder), Some(distance)) = (cylinder, &figures.cylinder_distance) {
+        fields = fields.with_cylinder(cylinder, distance.shift, &reference);
+    }
     let deformed = Deformed {
         cage: Arc::clone(&scene.cage),
         posed,
-        fields: Fields::new(&surface.flat, &reference, &positions),
+        fields,
         flat: Arc::new(surface.flat),
         positions,
         figures,
@@ -264,29 +270,33 @@ fn guarded_split<M: SmoothMap>(
         phase.advance(surface.images.len());
         let faces: Vec<_> = surface.flat.facets.iter().map(|f| f.vertices).collect();
         let crossings = intersect::crossings(&surface.positions(), &faces);
-        let Some(first) = crossings.first() else { return Ok(surface) };
+        if crossings.is_empty() {
+            return Ok(surface);
+        }
         if attempt == RETRIES {
-            return Err(crossing_error(&surface, *first, crossings.len()));
+            return Err(crossing_error(&surface, &crossings));
         }
         tolerance /= 2.0;
     }
     unreachable!("the last attempt returns")
 }
 
-fn crossing_error(surface: &SplitSurface<Carried>, first: intersect::Crossing, count: usize) -> PipelineError {
+/// Most places that are told of a surface that crosses itself.
+const MAX_PLACES: usize = 100;
+
+fn crossing_error(surface: &SplitSurface<Carried>, crossings: &[intersect::Crossing]) -> PipelineError {
+    let first = crossings[0];
     let posed = surface.flat.with_vertices(surface.positions());
-    let place = posed.corners(first.first.index()).iter().sum::<DVec3>() / 3.0;
+    let place = |c: &intersect::Crossing| posed.corners(c.first.index()).iter().sum::<DVec3>() / 3.0;
     let part = |f: usize| {
         let facet = &surface.flat.facets[f];
         let region = if facet.back == RegionId::AIR { facet.front } else { facet.back };
         surface.flat.regions[region.index()].name.clone()
     };
     PipelineError::Crossing {
-        count,
+        count: crossings.len(),
         what: format!("{} with {}", part(first.first.index()), part(first.second.index())),
-        x_mm: to_mm(place.x),
-        y_mm: to_mm(place.y),
-        z_mm: to_mm(place.z),
+        places_mm: crossings.iter().take(MAX_PLACES).map(|c| place(c).to_array().map(to_mm)).collect(),
     }
 }
 

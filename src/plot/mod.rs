@@ -20,6 +20,7 @@ pub mod charts;
 mod layout;
 pub mod palette;
 mod polar;
+mod scale;
 mod smith;
 
 use canvas::{Canvas, failed};
@@ -27,6 +28,7 @@ use plotters::prelude::{BitMapBackend, DrawingBackend, IntoDrawingArea, SVGBacke
 
 pub use axes::Axis;
 pub use polar::{Curve, Dial, Polar};
+pub use scale::{ColorScale, Overlay};
 pub use smith::{ARC_POINTS, MARKS, Smith, Trace, arc, reflection};
 
 /// Why there is no picture.
@@ -250,7 +252,7 @@ trait Drawing {
             self.draw(&Canvas::new(&area, canvas::PICTURE_DROP))?;
             area.present().map_err(failed)?;
         }
-        let (small, width, height) = averaged(&pixels, wide, high);
+        let (small, width, height) = averaged(&pixels, wide, high, PER_PIXEL);
         encode(&small, width, height).map_err(failed)
     }
 }
@@ -267,16 +269,16 @@ fn encode(pixels: &[u8], width: u32, height: u32) -> Result<Vec<u8>, png::Encodi
     Ok(bytes)
 }
 
-/// Means of squares of [`PER_PIXEL`] grid points.
-fn averaged(pixels: &[u8], wide: u32, high: u32) -> (Vec<u8>, u32, u32) {
-    let (width, height) = (wide / PER_PIXEL, high / PER_PIXEL);
+/// Means of squares of so many grid points on a side.
+fn averaged(pixels: &[u8], wide: u32, high: u32, side: u32) -> (Vec<u8>, u32, u32) {
+    let (width, height) = (wide / side, high / side);
     let mut small = Vec::with_capacity((width * height * 3) as usize);
     for y in 0..height {
         for x in 0..width {
             for channel in 0..3 {
-                let at = |dx, dy| pixels[(((y * PER_PIXEL + dy) * wide + x * PER_PIXEL + dx) * 3 + channel) as usize];
-                let sum: u32 = (0..PER_PIXEL).flat_map(|dy| (0..PER_PIXEL).map(move |dx| u32::from(at(dx, dy)))).sum();
-                small.push((sum / (PER_PIXEL * PER_PIXEL)) as u8);
+                let at = |dx, dy| pixels[(((y * side + dy) * wide + x * side + dx) * 3 + channel) as usize];
+                let sum: u32 = (0..side).flat_map(|dy| (0..side).map(move |dx| u32::from(at(dx, dy)))).sum();
+                small.push((sum / (side * side)) as u8);
             }
         }
     }

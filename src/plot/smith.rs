@@ -1,7 +1,7 @@
 //! The Smith chart: circles of constant resistance and reactance in the unit disc, with curves of reflection over them.
 
 use super::canvas::{Anchor, Canvas};
-use super::layout::{GRID_LINE, INK, LEGEND_ROW, PAPER, SAMPLE, SOFT, TICK, TITLE, legend_width};
+use super::layout::{INK, LEGEND_ROW, PAPER, SAMPLE, SOFT, TICK, TITLE, legend_width};
 use super::{Drawing, PlotError, quoted};
 use nalgebra::Complex;
 use plotters::prelude::DrawingBackend;
@@ -15,6 +15,10 @@ const RADIUS: f64 = 210.0;
 const MARGIN: f64 = 44.0;
 const TOP: f64 = 40.0;
 const MARK: f64 = 3.4;
+/// Points of a curve that are drawn at once: too few to come round.
+const PIECE: usize = 12;
+/// Thin lines are many here, and need more weight than those of a grid.
+const THIN: [u8; 3] = [202, 207, 212];
 
 /// A Smith chart.
 #[derive(Clone, Debug, PartialEq)]
@@ -89,7 +93,10 @@ impl Drawing for Smith {
         for (k, trace) in self.traces.iter().enumerate() {
             let mut path: Vec<(f64, f64)> = trace.s11.iter().map(|&s| place(s)).collect();
             path.dedup_by(|p, q| (p.0 - q.0).hypot(p.1 - q.1) < 0.3);
-            canvas.line(&path, trace.color, 1.6)?;
+            // In short pieces: a line that crosses itself would be hollow there.
+            for k in (0..path.len().saturating_sub(1)).step_by(PIECE) {
+                canvas.line(&path[k..(k + PIECE + 1).min(path.len())], trace.color, 1.6)?;
+            }
             if let Some(&s) = trace.marked.and_then(|m| trace.s11.get(m)) {
                 canvas.mark(place(s), MARK, trace.color)?;
             }
@@ -102,8 +109,7 @@ impl Drawing for Smith {
 }
 
 fn grid<B: DrawingBackend>(canvas: &Canvas<'_, B>) -> Result<(), PlotError> {
-    let line =
-        |points: Vec<Complex<f64>>| canvas.line(&points.into_iter().map(place).collect::<Vec<_>>(), GRID_LINE, 0.75);
+    let line = |points: Vec<Complex<f64>>| canvas.line(&points.into_iter().map(place).collect::<Vec<_>>(), THIN, 0.75);
     line(vec![Complex::from(-1.0), Complex::from(1.0)])?;
     for mark in MARKS {
         for sign in [1.0, -1.0] {

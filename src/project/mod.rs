@@ -5,6 +5,7 @@
 //! to the core's checked SI values are the `to_…` methods. [`Edit`] is every way it changes, [`History`] its past,
 //! [`mod@file`] its form on disk.
 
+pub mod amount;
 pub mod check;
 pub mod edit;
 mod example;

@@ -4,12 +4,12 @@
 //! cone leaves out the sides turned away), so that they are drawn on top of the scene without a depth buffer. An arrow
 //! that points at the viewer would be a blob that no drag could use: it is neither drawn nor picked.
 
-use super::gpu::{Cached, Uploader};
+use super::gpu::{Cached, Content, Uploader};
 use super::passes::{Recipe, Shared, shader, shader_source};
 use super::scene::{Rgba, Scene};
 use super::view::View;
 use super::{Vec2, Vec3};
-use wgpu::{BufferUsages, CompareFunction, PrimitiveTopology};
+use wgpu::{CompareFunction, PrimitiveTopology};
 
 /// From the center to the tips, points.
 const ARM: f32 = 76.0;
@@ -213,10 +213,10 @@ impl GizmoPass {
         Self { pipeline, corners: Cached::default(), frame: 0 }
     }
 
-    pub(super) fn update(&mut self, gpu: Uploader<'_>, scene: &Scene, view: &View) {
+    pub(super) fn update(&mut self, gpu: &mut Uploader<'_>, scene: &Scene, view: &View) {
         self.frame += 1;
         let make = || scene.gizmo.as_ref().map_or_else(Vec::new, |gizmo| sketch(gizmo, view));
-        self.corners.update(gpu, BufferUsages::VERTEX, [self.frame, 0], make);
+        self.corners.update(gpu, Content::Gizmo, [self.frame, 0], make);
     }
 
     pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {

@@ -4,6 +4,8 @@
 
 #![allow(clippy::cast_possible_truncation, reason = "byte counts of buffers, far below 2^63")]
 
+use wgpu::BufferUsages;
+
 /// Why there is no picture.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum GpuError {
@@ -69,11 +71,68 @@ impl Gpu {
     }
 }
 
-/// A device and its queue, as passes get them.
-#[derive(Clone, Copy, Debug)]
+/// What is in a buffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Content {
+    /// Vertices of surfaces.
+    Positions,
+    /// The field on them.
+    Values,
+    /// Their triangles.
+    Triangles,
+    /// Ends of lines.
+    Lines,
+    /// Places and states of handles.
+    Handles,
+    /// The arrows at the selection, which keep their size on the screen.
+    Gizmo,
+}
+
+/// What a renderer has done since it was made: uploads of lists by what is in them, and pictures drawn.
+///
+/// Uniforms, some hundred bytes for each picture, do not count.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Pictures drawn.
+    pub pictures: u64,
+    /// Uploads of vertices of surfaces.
+    pub positions: u64,
+    /// Uploads of fields.
+    pub values: u64,
+    /// Uploads of triangles.
+    pub triangles: u64,
+    /// Uploads of ends of lines.
+    pub lines: u64,
+    /// Uploads of places or states of handles.
+    pub handles: u64,
+    /// Uploads of the arrows at the selection.
+    pub gizmo: u64,
+    /// Bytes uploaded in all of them.
+    pub bytes: u64,
+}
+
+/// A device and its queue, as passes get them, and where uploads are counted.
+#[derive(Debug)]
 pub(super) struct Uploader<'a> {
     pub(super) device: &'a wgpu::Device,
     pub(super) queue: &'a wgpu::Queue,
+    pub(super) counts: &'a mut Counts,
+}
+
+impl Uploader<'_> {
+    fn count(&mut self, content: Content, bytes: u64) {
+        let counts = &mut *self.counts;
+        let uploads = match content {
+            Content::Positions => &mut counts.positions,
+            Content::Values => &mut counts.values,
+            Content::Triangles => &mut counts.triangles,
+            Content::Lines => &mut counts.lines,
+            Content::Handles => &mut counts.handles,
+            Content::Gizmo => &mut counts.gizmo,
+        };
+        *uploads += 1;
+        counts.bytes += bytes;
+    }
 }
 
 /// A buffer that remembers the generations of what it holds.
@@ -89,8 +148,8 @@ impl Cached {
     /// Uploads what `make` returns, unless it was made from the same generations.
     pub(super) fn update<T: bytemuck::Pod>(
         &mut self,
-        gpu: Uploader<'_>,
-        usage: wgpu::BufferUsages,
+        gpu: &mut Uploader<'_>,
+        content: Content,
         key: [u64; 2],
         make: impl FnOnce() -> Vec<T>,
     ) {
@@ -102,13 +161,15 @@ impl Cached {
         let size = bytes.len() as u64;
         let fits = self.buffer.as_ref().is_some_and(|b| size <= b.size());
         if !fits {
-            let usage = usage | wgpu::BufferUsages::COPY_DST;
+            let kind = if content == Content::Triangles { BufferUsages::INDEX } else { BufferUsages::VERTEX };
+            let usage = kind | BufferUsages::COPY_DST;
             let descriptor =
                 wgpu::BufferDescriptor { label: None, size: size.max(16), usage, mapped_at_creation: false };
             self.buffer = Some(gpu.device.create_buffer(&descriptor));
         }
         if let Some(buffer) = self.buffer.as_ref().filter(|_| size > 0) {
             gpu.queue.write_buffer(buffer, 0, bytes);
+            gpu.count(content, size);
         }
         self.key = key;
         self.count = items.len() as u32;

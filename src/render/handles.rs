@@ -1,10 +1,10 @@
 //! Pass: handles. Like lines, dimmed where hidden and in full where not.
 
-use super::gpu::{Cached, Uploader};
+use super::gpu::{Cached, Content, Uploader};
 use super::passes::{Recipe, Record, Records, Shared, shader, shader_source};
 use super::scene::{HandleState, Handles, Scene};
 use super::uniforms::{HandleStyle, unit};
-use wgpu::{BufferUsages, CompareFunction, PrimitiveTopology};
+use wgpu::{CompareFunction, PrimitiveTopology};
 
 /// Depth steps that lift a handle over the lines and faces that meet in it.
 const LIFT: f32 = 6.0;
@@ -48,12 +48,12 @@ impl HandlePass {
         Self { hidden, visible, positions: Cached::default(), states: Cached::default(), draws: None }
     }
 
-    pub(super) fn update(&mut self, gpu: Uploader<'_>, scene: &Scene, scale: f32, records: &mut Records) {
+    pub(super) fn update(&mut self, gpu: &mut Uploader<'_>, scene: &Scene, scale: f32, records: &mut Records) {
         self.draws = scene.handles.as_ref().map(|handles| {
             let (positions, states) = (&handles.positions, &handles.states);
-            self.positions.update(gpu, BufferUsages::VERTEX, [positions.generation(), 0], || positions.to_vec());
+            self.positions.update(gpu, Content::Handles, [positions.generation(), 0], || positions.to_vec());
             let key = [states.generation(), positions.len() as u64];
-            self.states.update(gpu, BufferUsages::VERTEX, key, || codes(handles));
+            self.states.update(gpu, Content::Handles, key, || codes(handles));
             let mut push = |alpha| records.push(&style(handles, scale, alpha));
             ((handles.hidden > 0.0).then(|| push(handles.hidden)), push(1.0))
         });

@@ -1,10 +1,10 @@
 //! Pass: lines. Drawn twice: dimmed where a surface hides them, then in full where nothing does.
 
-use super::gpu::{Cached, Uploader};
+use super::gpu::{Cached, Content, Uploader};
 use super::passes::{Recipe, Record, Records, Shared, shader, shader_source};
 use super::scene::{Lines, Scene};
 use super::uniforms::{LineStyle, unit};
-use wgpu::{BufferUsages, CompareFunction, PrimitiveTopology};
+use wgpu::{CompareFunction, PrimitiveTopology};
 
 /// Depth steps (see `renderer`) that lift a line off the surface it lies on.
 const LIFT: f32 = 1.0;
@@ -42,12 +42,12 @@ impl LinePass {
         Self { hidden, visible, buffers: Vec::new(), draws: Vec::new() }
     }
 
-    pub(super) fn update(&mut self, gpu: Uploader<'_>, scene: &Scene, scale: f32, records: &mut Records) {
+    pub(super) fn update(&mut self, gpu: &mut Uploader<'_>, scene: &Scene, scale: f32, records: &mut Records) {
         self.buffers.resize_with(scene.lines.len(), Cached::default);
         self.draws.clear();
         for (index, (lines, buffer)) in scene.lines.iter().zip(&mut self.buffers).enumerate() {
             let key = [lines.positions.generation(), lines.edges.generation()];
-            buffer.update(gpu, BufferUsages::VERTEX, key, || segments(lines));
+            buffer.update(gpu, Content::Lines, key, || segments(lines));
             let [r, g, b, a] = unit(lines.color);
             let shape = [lines.width * scale, LIFT, 0.0, 0.0];
             let mut push = |alpha| records.push(&LineStyle { color: [r, g, b, alpha], shape });

@@ -56,8 +56,7 @@ pub(super) struct Shared {
 }
 
 impl Shared {
-    pub(super) fn new(gpu: Uploader<'_>) -> Self {
-        let device = gpu.device;
+    pub(super) fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Self {
         let global_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("globals"),
             entries: &[uniform_entry(false), texture_entry(1)],
@@ -67,7 +66,7 @@ impl Shared {
             entries: &[uniform_entry(true)],
         });
         let globals = uniform_buffer(device, size_of::<Globals>() as u64);
-        let maps = color_map_texture(gpu).create_view(&wgpu::TextureViewDescriptor::default());
+        let maps = color_map_texture(device, queue).create_view(&wgpu::TextureViewDescriptor::default());
         let global_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("globals"),
             layout: &global_layout,
@@ -82,7 +81,7 @@ impl Shared {
     }
 
     /// Uploads the frame's uniforms.
-    pub(super) fn update(&mut self, gpu: Uploader<'_>, globals: &Globals, records: &Records) {
+    pub(super) fn update(&mut self, gpu: &Uploader<'_>, globals: &Globals, records: &Records) {
         gpu.queue.write_buffer(&self.globals, 0, bytemuck::bytes_of(globals));
         let size = records.bytes.len() as u64;
         if size > self.styles.size() {
@@ -196,13 +195,13 @@ fn style_group(device: &wgpu::Device, layout: &wgpu::BindGroupLayout, styles: &w
 }
 
 /// One row of texels per colour map.
-fn color_map_texture(gpu: Uploader<'_>) -> wgpu::Texture {
+fn color_map_texture(device: &wgpu::Device, queue: &wgpu::Queue) -> wgpu::Texture {
     let texels: Vec<u8> =
         ColorMap::ALL.iter().flat_map(|map| map.table()).flat_map(|&[r, g, b]| [r, g, b, 255]).collect();
     let width = u32::try_from(colormap::N_ENTRIES).expect("a table is short");
     let height = u32::try_from(ColorMap::ALL.len()).expect("there are few maps");
     let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
-    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+    let texture = device.create_texture(&wgpu::TextureDescriptor {
         label: Some("colour maps"),
         size,
         mip_level_count: 1,
@@ -213,6 +212,6 @@ fn color_map_texture(gpu: Uploader<'_>) -> wgpu::Texture {
         view_formats: &[],
     });
     let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * width), rows_per_image: None };
-    gpu.queue.write_texture(texture.as_image_copy(), &texels, layout, size);
+    queue.write_texture(texture.as_image_copy(), &texels, layout, size);
     texture
 }

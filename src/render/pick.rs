@@ -38,6 +38,17 @@ pub fn handles_in(view: &View, positions: &[Vec3], corner: Vec2, opposite: Vec2)
     seen.filter(|&(_, &p)| view.project(p).is_some_and(|q| inside(q.at))).map(|(i, _)| i).collect()
 }
 
+/// The handles inside a closed line drawn by hand, by the even-odd rule, in ascending order.
+#[must_use]
+pub fn handles_within(view: &View, positions: &[Vec3], outline: &[Vec2]) -> Vec<usize> {
+    let sides = || outline.iter().zip(outline.iter().cycle().skip(1));
+    let crosses =
+        |p: Vec2, a: Vec2, b: Vec2| (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x);
+    let inside = |p: Vec2| sides().filter(|(a, b)| crosses(p, **a, **b)).count() % 2 == 1;
+    let seen = positions.iter().enumerate();
+    seen.filter(|&(_, &p)| view.project(p).is_some_and(|q| inside(q.at))).map(|(i, _)| i).collect()
+}
+
 /// The part of `gizmo` under the pointer; the center before the arrows, near arrows before far ones.
 #[must_use]
 pub fn gizmo_at(view: &View, gizmo: &Gizmo, pointer: Vec2) -> Option<GizmoPart> {
@@ -163,6 +174,19 @@ mod tests {
         let [a, b] = [Vec3::new(-1.0, 6.0, 0.0), Vec3::new(6.0, -1.0, 0.0)].map(|p| on_screen(&view, p));
         assert_eq!(handles_in(&view, &handles, a, b), [0, 1], "the fourth is behind the eye");
         assert_eq!(handles_in(&view, &handles, b, a), [0, 1], "dragged backwards");
+    }
+
+    #[test]
+    fn a_lasso_selects_what_lies_inside_it_and_not_in_its_bay() {
+        let view = top();
+        let handles = [[0.0, 6.0], [-6.0, -6.0], [6.0, -6.0], [20.0, 0.0]].map(|[x, y]| Vec3::new(x, y, 0.0));
+        // A "U" turned over: the first handle is in its bow, the next two in its legs; the middle is left out.
+        let line =
+            [[-9.0, -9.0], [-9.0, 9.0], [9.0, 9.0], [9.0, -9.0], [3.0, -9.0], [3.0, 3.0], [-3.0, 3.0], [-3.0, -9.0]];
+        let line: Vec<Vec2> = line.iter().map(|&[x, y]| on_screen(&view, Vec3::new(x, y, 0.0))).collect();
+        assert_eq!(handles_within(&view, &handles, &line), [0, 1, 2], "the fourth is outside");
+        assert_eq!(handles_within(&view, &[Vec3::ZERO], &line), [0; 0], "nor is the bay part of it");
+        assert_eq!(handles_within(&view, &handles, &line[..1]), [0; 0], "a point encloses nothing");
     }
 
     #[test]

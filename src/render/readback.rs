@@ -6,7 +6,7 @@ use super::renderer::Renderer;
 use super::scene::{Rgba, Scene};
 use super::view::View;
 
-/// An image: rows from the top, sRGB-encoded, opaque.
+/// An image: rows from the top, sRGB-encoded, with straight alpha: opaque unless the scene's ground is not.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture {
     /// Texels across.
@@ -86,6 +86,15 @@ fn read(gpu: &Gpu, mut encoder: wgpu::CommandEncoder, texture: &wgpu::Texture) -
     receiver.recv().map_err(|e| failed(e.to_string()))?.map_err(|e| failed(e.to_string()))?;
     let bytes = buffer.get_mapped_range(..).map_err(|e| failed(e.to_string()))?;
     let rows = bytes.chunks_exact(stride as usize);
-    let pixels = rows.flat_map(|row| row.as_chunks::<4>().0.iter().take(width as usize).copied()).collect();
+    let pixels = rows.flat_map(|row| row.as_chunks::<4>().0.iter().take(width as usize).map(straight)).collect();
     Ok(Picture { width, height, pixels })
+}
+
+/// Undoes the multiplication of the colour by its alpha.
+fn straight(&[r, g, b, a]: &Rgba) -> Rgba {
+    if matches!(a, 0 | 255) {
+        return [r, g, b, a];
+    }
+    let whole = |c: u8| u8::try_from((u32::from(c) * 255 + u32::from(a) / 2) / u32::from(a)).unwrap_or(255);
+    [whole(r), whole(g), whole(b), a]
 }

@@ -13,7 +13,7 @@
 use super::blit::BlitPass;
 use super::camera::Projection;
 use super::gizmo::GizmoPass;
-use super::gpu::Uploader;
+use super::gpu::{Counts, Uploader};
 use super::grid::GridPass;
 use super::handles::HandlePass;
 use super::lines::LinePass;
@@ -35,6 +35,7 @@ pub struct Renderer {
     blit: BlitPass,
     targets: Option<Targets>,
     drawn: Option<(Scene, View)>,
+    counts: Counts,
 }
 
 #[derive(Debug)]
@@ -51,7 +52,7 @@ impl Renderer {
     /// Makes the pipelines; `format` is that of the pass that [`Self::blit`] will draw into.
     #[must_use]
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, format: wgpu::TextureFormat) -> Self {
-        let shared = Shared::new(Uploader { device, queue });
+        let shared = Shared::new(device, queue);
         Self {
             surfaces: SurfacePass::new(device, &shared),
             grid: GridPass::new(device, &shared),
@@ -62,6 +63,7 @@ impl Renderer {
             shared,
             targets: None,
             drawn: None,
+            counts: Counts::default(),
         }
     }
 
@@ -79,23 +81,30 @@ impl Renderer {
         if self.drawn.as_ref().is_some_and(|(s, v)| s == scene && v == view) {
             return false;
         }
-        let gpu = Uploader { device, queue };
         let limit = device.limits().max_texture_dimension_2d as f32;
         let size = (view.size * view.scale).round().clamp(glam::Vec2::ONE, glam::Vec2::splat(limit));
         let size = [size.x as u32, size.y as u32];
         if self.targets.as_ref().is_none_or(|t| t.size != size) {
             self.targets = Some(self.make_targets(device, size));
         }
+        let mut gpu = Uploader { device, queue, counts: &mut self.counts };
         let mut records = Records::default();
-        self.surfaces.update(gpu, scene, &mut records);
+        self.surfaces.update(&mut gpu, scene, &mut records);
         self.grid.update(scene, view, &mut records);
-        self.lines.update(gpu, scene, view.scale, &mut records);
-        self.handles.update(gpu, scene, view.scale, &mut records);
-        self.gizmo.update(gpu, scene, view);
-        self.shared.update(gpu, &globals(view, size), &records);
+        self.lines.update(&mut gpu, scene, view.scale, &mut records);
+        self.handles.update(&mut gpu, scene, view.scale, &mut records);
+        self.gizmo.update(&mut gpu, scene, view);
+        self.shared.update(&gpu, &globals(view, size), &records);
+        self.counts.pictures += 1;
         self.record(encoder, scene);
         self.drawn = Some((scene.clone(), *view));
         true
+    }
+
+    /// What was uploaded and drawn so far.
+    #[must_use]
+    pub fn counts(&self) -> Counts {
+        self.counts
     }
 
     /// Draws the last picture over the viewport of `pass`; nothing before the first [`Self::prepare`].
@@ -113,7 +122,8 @@ impl Renderer {
 
     fn record(&self, encoder: &mut wgpu::CommandEncoder, scene: &Scene) {
         let Some(targets) = &self.targets else { return };
-        let [r, g, b, _] = unit(scene.background).map(f64::from);
+        // Blending over a clear ground multiplies colours by their alpha, so the ground begins so, too.
+        let [r, g, b, a] = unit(scene.background).map(f64::from);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("scene"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -121,7 +131,7 @@ impl Renderer {
                 depth_slice: None,
                 resolve_target: Some(&targets.resolved_view),
                 ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 }),
+                    load: wgpu::LoadOp::Clear(wgpu::Color { r: r * a, g: g * a, b: b * a, a }),
                     store: wgpu::StoreOp::Discard,
                 },
             })],

@@ -63,7 +63,7 @@ impl<T> PartialEq for Array<T> {
 /// Everything in one picture.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scene {
-    /// Colour behind everything; its alpha is ignored.
+    /// Colour behind everything; what is seen through it stays clear in a picture.
     pub background: Rgba,
     /// Triangle surfaces.
     pub surfaces: Vec<Surface>,

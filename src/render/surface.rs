@@ -1,10 +1,10 @@
 //! Pass: triangles. Opaque parts first; translucent ones later, back faces before front faces, without writing depth.
 
-use super::gpu::{Cached, Uploader};
+use super::gpu::{Cached, Content, Uploader};
 use super::passes::{Recipe, Record, Records, Shared, shader, shader_source};
 use super::scene::{Paint, Part, Scene, Surface};
 use super::uniforms::{SurfaceStyle, unit};
-use wgpu::{BufferUsages, CompareFunction, Face, PrimitiveTopology};
+use wgpu::{CompareFunction, Face, PrimitiveTopology};
 
 /// Colour of a field that is not there.
 const NO_FIELD: [u8; 4] = [150, 150, 150, 255];
@@ -67,7 +67,7 @@ impl SurfacePass {
         }
     }
 
-    pub(super) fn update(&mut self, gpu: Uploader<'_>, scene: &Scene, records: &mut Records) {
+    pub(super) fn update(&mut self, gpu: &mut Uploader<'_>, scene: &Scene, records: &mut Records) {
         self.surfaces.resize_with(scene.surfaces.len(), Buffers::default);
         self.draws.clear();
         for (index, (surface, buffers)) in scene.surfaces.iter().zip(&mut self.surfaces).enumerate() {
@@ -118,20 +118,20 @@ fn field(surface: &Surface) -> Option<&super::Scalars> {
     surface.scalars.as_ref().filter(|s| s.values.len() == surface.positions.len())
 }
 
-fn upload(gpu: Uploader<'_>, surface: &Surface, buffers: &mut Buffers) {
+fn upload(gpu: &mut Uploader<'_>, surface: &Surface, buffers: &mut Buffers) {
     let positions = &surface.positions;
-    buffers.positions.update(gpu, BufferUsages::VERTEX, [positions.generation(), 0], || positions.to_vec());
+    buffers.positions.update(gpu, Content::Positions, [positions.generation(), 0], || positions.to_vec());
     match field(surface) {
-        Some(s) => buffers.values.update(gpu, BufferUsages::VERTEX, [s.values.generation(), 0], || s.values.to_vec()),
+        Some(s) => buffers.values.update(gpu, Content::Values, [s.values.generation(), 0], || s.values.to_vec()),
         // The pipeline wants a buffer in any case; it changes only with the number of vertices.
-        None => buffers
-            .values
-            .update(gpu, BufferUsages::VERTEX, [0, positions.len() as u64], || vec![0.0_f32; positions.len()]),
+        None => {
+            buffers.values.update(gpu, Content::Values, [0, positions.len() as u64], || vec![0.0_f32; positions.len()])
+        }
     }
     buffers.parts.resize_with(surface.parts.len(), Cached::default);
     for (part, indices) in surface.parts.iter().zip(&mut buffers.parts) {
         let triangles = &part.triangles;
-        indices.update(gpu, BufferUsages::INDEX, [triangles.generation(), 0], || triangles.to_vec());
+        indices.update(gpu, Content::Triangles, [triangles.generation(), 0], || triangles.to_vec());
     }
 }
 

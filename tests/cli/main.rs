@@ -16,7 +16,9 @@ use std::time::Duration;
 fn help_names_every_command_and_wrong_usage_ends_with_2() {
     let bench = Bench::new();
     let help = bench.ok("--help");
-    for command in ["new", "deform", "compensate", "export", "solve", "compare", "verify", "study", "info", "apply"] {
+    for command in
+        ["new", "deform", "compensate", "export", "solve", "compare", "verify", "study", "info", "apply", "report"]
+    {
         assert!(help.contains(&format!("\n  {command} ")), "{command} in:\n{help}");
         assert!(bench.ok(&format!("{command} --help")).contains("Usage:"), "{command} --help");
     }
@@ -397,4 +399,22 @@ fn mesh_fills_a_surface_complex_and_refuses_what_is_none() {
     bench.fails("mesh --surface b.json", 1, "b.json");
     bench.fails("mesh a.json --surface b.json", 2, "cannot be used with");
     bench.fails("mesh", 2, "required");
+}
+
+#[test]
+fn report_is_one_page_with_the_kept_results_and_says_what_is_missing() {
+    let bench = Bench::new();
+    bench.ok("new a.json --bend h --radius 11 --segments 10");
+    let said = bench.ok("report a.json --out r.html");
+    assert!(said.contains("no kept results"), "{said}");
+    let html = fs::read_to_string(bench.path("r.html")).unwrap();
+    assert!(html.starts_with("<!DOCTYPE html>") && html.trim_end().ends_with("</html>"), "a page");
+    for text in ["<h1>a</h1>", "11 mm", "Crossing triangles", "not computed</span>", "Iteration"] {
+        assert!(html.contains(text), "{text}");
+    }
+    for outside in ["http:", "https:", "<script", "<link"] {
+        assert!(!html.contains(outside), "nothing of the outside: {outside}");
+    }
+    bench.fails("report missing.json --out r.html", 1, "missing.json");
+    bench.fails("report a.json", 2, "--out");
 }

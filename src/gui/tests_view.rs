@@ -1,0 +1,150 @@
+//! Tests of what is looked at and got out: painted distortion, comparison, crossings, pictures, the report.
+
+use super::app::App;
+use super::command::Command;
+use super::heat::OnShow;
+use super::outbox::Action;
+use super::tests::{Window, has_adapter, lay_out, project, settle, window};
+use super::ui_state::{Heat, HeatPart};
+use crate::pipeline::PipelineError;
+use crate::pipeline::worker::Reply;
+use crate::project::CompensationMode;
+use egui_kittest::kittest::Queryable;
+use std::time::{Duration, Instant};
+
+fn run(window: &mut Window, command: Command) {
+    let ctx = window.ctx.clone();
+    window.state_mut().carry_out(&ctx, Action::Run(command));
+    lay_out(window);
+}
+
+/// Steps until something is so; generous, because machines are slow and busy.
+fn until(window: &mut Window, what: &str, is_so: impl Fn(&App) -> bool) {
+    let start = Instant::now();
+    while !is_so(window.state()) {
+        assert!(start.elapsed() < Duration::from_secs(300), "{what} does not happen");
+        std::thread::sleep(Duration::from_millis(5));
+        window.step();
+    }
+    lay_out(window);
+}
+
+#[test]
+fn every_quantity_is_painted_with_its_histogram_and_a_fixed_range_holds() {
+    let mut window = window();
+    for heat in Heat::ALL.into_iter().filter(|h| *h != Heat::None) {
+        let state = &mut window.state_mut().state;
+        (state.heat, state.heat_part, state.shows_ghost) = (heat, HeatPart::Patch, true);
+        lay_out(&mut window);
+        let name = format!("Histogram of {}", heat.text().to_lowercase());
+        assert!(window.query_by_label(&name).is_some(), "{name}");
+    }
+    window.get_by_label("Fixed range").click();
+    lay_out(&mut window);
+    let ends = window.state().state.heat_ends.expect("fixed");
+    assert!(ends[0].abs() < 1e-6 && ends[1] > 100.0, "the uncompensated antenna is off by more than 100 µm: {ends:?}");
+    window.state_mut().state.heat_ends = Some([5.0, 2.0]);
+    lay_out(&mut window);
+    window.get_by_label_contains("is not below the upper");
+    run(&mut window, Command::SavePlot);
+    window.get_by_label("Save plot");
+    window.get_by_label("Cancel").click();
+    lay_out(&mut window);
+    window.state_mut().state.heat = Heat::Area;
+    lay_out(&mut window);
+}
+
+#[test]
+fn before_and_after_are_compared_and_looked_at_without_changing_the_project() {
+    let mut window = window();
+    let before = project(&window);
+    run(&mut window, Command::Compare);
+    until(&mut window, "a comparison", |app| app.compare.compared().is_some());
+    let strain = |mode| match window.state().compare.on_show(mode) {
+        Some(OnShow { deformed, .. }) => deformed.figures.patch_strain,
+        None => f64::NAN,
+    };
+    let [raw, wl, isometric] = crate::pipeline::compare_job::MODES.map(strain);
+    assert!(raw > 5.0 * wl && wl > 2.0 * isometric, "each does better: {raw}, {wl}, {isometric}");
+    window.get_all_by_label("Isometric").next().expect("the switch of the view").click();
+    lay_out(&mut window);
+    assert_eq!(window.state().state.preview, Some(CompensationMode::Isometric), "looked at");
+    assert!(window.query_by_label("Cage vertex 3").is_none(), "nothing can be taken hold of");
+    assert_eq!(project(&window), before, "the project stays");
+    assert!(!window.state().session.history().can_undo(), "no step");
+    window.state_mut().edit("hand edits", crate::project::Edit::MoveVertices(vec![(3, [0.1, 0.0, 0.0])]));
+    settle(&mut window);
+    assert_eq!(window.state().state.preview, None, "a change ends the look");
+    window.get_by_label_contains("The project has changed since");
+}
+
+#[test]
+fn crossings_of_a_refused_shape_are_listed_and_gone_to() {
+    let mut window = window();
+    window.state_mut().edit("hand edits", crate::project::Edit::MoveVertices(vec![(3, [0.01, 0.0, 0.0])]));
+    let places_mm = vec![[1.0, 2.0, -3.0], [1.5, 2.0, -3.0]];
+    let error = PipelineError::Crossing { count: 2, what: "coax with ground".to_owned(), places_mm };
+    window.state_mut().session.sync();
+    let generation = window.state().session.generation().expect("a request was sent");
+    window.state_mut().session.receive(Reply { generation, result: Err(error), retreat: None });
+    lay_out(&mut window);
+    window.get_by_label("1.5, 2.0, -3.0 mm").click();
+    lay_out(&mut window);
+    let target = window.state().state.camera.target;
+    assert!(target.distance(crate::render::Vec3::new(1.5, 2.0, -3.0)) < 1e-6, "looked at: {target}");
+}
+
+#[test]
+fn the_report_is_saved_from_its_dialog() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut window = window();
+    window.state_mut().session.path = Some(folder.path().join("wrist.json"));
+    run(&mut window, Command::Report);
+    window.get_by_label_contains("no mesh: none was made");
+    window.get_all_by_label("Save").last().expect("the button of the dialog").click();
+    let path = folder.path().join("wrist-report.html");
+    let file = path.clone();
+    until(&mut window, "a report", move |_| file.exists());
+    until(&mut window, "an end", |app| matches!(app.dialog, super::dialogs::Dialog::None));
+    let html = std::fs::read_to_string(path).expect("written beside the project");
+    assert!(html.contains("<h1>wrist</h1>") && html.contains("Crossing triangles"), "a whole report");
+    assert_eq!(html.contains("data:image/png"), has_adapter(), "with a picture where one can be drawn");
+}
+
+#[test]
+fn an_idle_window_draws_nothing_turning_uploads_nothing_and_a_drag_positions_alone() {
+    if !has_adapter() {
+        return;
+    }
+    let render = std::sync::Arc::new(std::sync::Mutex::new(None));
+    let kept = std::sync::Arc::clone(&render);
+    let builder = egui_kittest::Harness::builder().with_size((1280.0, 800.0)).with_theme(egui::Theme::Dark).wgpu();
+    let mut window = builder.build_eframe(move |cc| {
+        *kept.lock().expect("no panic") = cc.wgpu_render_state.clone();
+        App::new(cc, None)
+    });
+    settle(&mut window);
+    let draw = |window: &mut Window| {
+        window.step();
+        window.render().expect("an adapter");
+        let state = render.lock().expect("no panic");
+        let renderer = state.as_ref().expect("an adapter").renderer.read();
+        renderer.callback_resources.get::<crate::render::Renderer>().expect("installed").counts()
+    };
+    let away = egui::pos2(640.0, 790.0);
+    window.event(egui::Event::PointerMoved(away));
+    draw(&mut window);
+    let idle = draw(&mut window);
+    assert_eq!(draw(&mut window), idle, "idle");
+    window.state_mut().state.camera.orbit(crate::render::Vec2::new(7.0, 3.0));
+    let turned = draw(&mut window);
+    assert_eq!(turned, crate::render::Counts { pictures: idle.pictures + 1, ..idle }, "turned");
+    window.state_mut().session.begin();
+    let moved = crate::project::Edit::MoveVertices(vec![(3, [0.0, 0.0, 0.2])]);
+    window.state_mut().edit("hand edits", moved);
+    until(&mut window, "a preview", |app| app.session.shown().is_some_and(|s| !s.deformed.is_final));
+    let dragged = draw(&mut window);
+    assert_eq!((dragged.triangles, dragged.values), (turned.triangles, turned.values), "neither triangles nor fields");
+    assert!(dragged.positions > turned.positions && dragged.lines > turned.lines, "the antenna and its outlines moved");
+    assert_eq!(draw(&mut window), dragged, "and rests again");
+}
