@@ -88,6 +88,18 @@ pub struct NewArgs {
     /// Substrate height, mm
     #[arg(long, value_name = "MM")]
     pub(super) height: Option<f64>,
+    /// Drawing of the patch's outline, DXF or SVG: its one closed line
+    #[arg(long, value_name = "FILE", conflicts_with = "freq")]
+    pub(super) outline: Option<PathBuf>,
+    /// Unit of the drawing: mm, cm, m, um, in or mil [default: as the file says]
+    #[arg(long, requires = "outline")]
+    pub(super) unit: Option<String>,
+    /// How far straight pieces may leave the drawing's curves, mm
+    #[arg(long, value_name = "MM", default_value_t = 0.02)]
+    pub(super) tolerance: f64,
+    /// Place of the feed from the patch's center, mm
+    #[arg(long, value_name = "X,Y", value_delimiter = ',', num_args = 1)]
+    pub(super) feed: Vec<f64>,
     /// Substrate by name, listed below; --eps-r and --tan-delta change its values
     #[arg(long, value_name = "NAME")]
     pub(super) substrate: Option<String>,

@@ -18,6 +18,7 @@ pub(super) const MENUS: [Menu; 6] = [
         "File",
         &[
             &[C::New, C::Open, C::Save, C::SaveAs, C::ClearRecent],
+            &[C::ImportOutline],
             &[C::Export, C::ExportMesh, C::ExportResults, C::SavePlot],
             &[C::Quit],
         ],

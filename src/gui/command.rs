@@ -14,6 +14,7 @@ pub(super) enum Command {
     Save,
     SaveAs,
     ClearRecent,
+    ImportOutline,
     Export,
     Quit,
     Undo,
@@ -91,6 +92,7 @@ impl Command {
         Self::Save,
         Self::SaveAs,
         Self::ClearRecent,
+        Self::ImportOutline,
         Self::Export,
         Self::Quit,
         Self::Undo,
@@ -152,6 +154,7 @@ impl Command {
             Self::Save => ("Save", "Save the project file"),
             Self::SaveAs => ("Save as…", "Save the project under another name"),
             Self::ClearRecent => ("Clear recent files", "Forget which files were used last; the files stay"),
+            Self::ImportOutline => ("Import outline…", "Take the patch's outline from a DXF or SVG drawing"),
             Self::Export => ("Export…", "Write the geometry with its certificate of no gaps"),
             Self::Quit => ("Quit", "Close the window"),
             Self::Undo => ("Undo", "Take back the last step"),
@@ -263,7 +266,9 @@ impl Command {
             Self::PreviousPanel => vec![KeyboardShortcut::new(Modifiers::SHIFT, Key::F6)],
             Self::Palette => vec![command_shift(Key::P)],
             Self::Keys => vec![plain(Key::F1)],
-            Self::ResetLayout | Self::ClearRecent | Self::Welcome | Self::Example(_) => Vec::new(),
+            Self::ResetLayout | Self::ClearRecent | Self::ImportOutline | Self::Welcome | Self::Example(_) => {
+                Vec::new()
+            }
             Self::ResetAll | Self::CompensateNot | Self::SavePlot | Self::ShowLog | Self::Theme(_) => Vec::new(),
         }
     }

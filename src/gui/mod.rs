@@ -33,6 +33,7 @@ mod mesh_scene;
 mod mesh_session;
 mod notices;
 mod outbox;
+mod outline_dialog;
 mod overlay;
 mod paint;
 mod palette;
