@@ -73,6 +73,8 @@ const OUTSIDE: &[(&str, &[&str])] = &[
     ("anyhow", &["cli", "gui", "main"]),
     ("clap", &["cli", "main"]),
     ("plotters", &["plot"]),
+    ("kurbo", &["io"]),
+    ("roxmltree", &["io"]),
     ("std::thread", &["pipeline", "gui"]),
     ("std::fs", &["io", "project", "cli", "gui"]),
     ("println!", &["cli", "main"]),

@@ -4,6 +4,7 @@
 //! triangulation, refined to a smallest angle; outlines that cross (the coaxial line reaches past the radiating edge)
 //! are split at the crossing. Every layer of the antenna uses this one triangulation, so layers match by construction.
 
+use super::outline::contains;
 use super::params::PatchParams;
 use super::patch::PatchError;
 use crate::geometry::DVec2;
@@ -45,7 +46,7 @@ pub(super) fn triangulate(params: &PatchParams) -> Result<Footprint, PatchError>
     let pin = circle(params, params.pin_radius, params.pin_segments);
     let sheath = circle(params, params.coax_radius, params.coax_segments);
     let ground = rectangle(params.ground_width, params.ground_length);
-    let patch = rectangle(params.width, params.length);
+    let patch = params.patch_corners();
     let mut cdt = Cdt::new();
     for outline in [&ground[..], &patch[..], &pin[..], &sheath[..]] {
         add_outline(&mut cdt, outline)?;
@@ -61,7 +62,13 @@ pub(super) fn triangulate(params: &PatchParams) -> Result<Footprint, PatchError>
         return Err(PatchError::Refinement);
     }
     let tolerance = SNAP * params.ground_width.max(params.ground_length);
-    let snapped = |p: DVec2| snap(snap(p, &ground, tolerance), &patch, tolerance);
+    // The lines of a polygon are of any slope: what is added on them lies off by rounding, which shifts no triangle's
+    // center across.
+    let onto_patch = |p: DVec2| match patch[..] {
+        [a, _, c, _] if params.outline.is_empty() => snap(p, [a, c], tolerance),
+        _ => p,
+    };
+    let snapped = |p: DVec2| onto_patch(snap(p, [ground[0], ground[2]], tolerance));
     let points: Vec<DVec2> = cdt.vertices().map(|v| snapped(v.data().0)).collect();
     let triangles: Vec<[usize; 3]> = cdt.inner_faces().map(|f| f.vertices().map(|v| v.index())).collect();
     let covers = triangles
@@ -69,7 +76,7 @@ pub(super) fn triangulate(params: &PatchParams) -> Result<Footprint, PatchError>
         .map(|t| {
             let center = t.iter().map(|&v| points[v]).sum::<DVec2>() / 3.0;
             let in_pin = in_convex(&pin, center);
-            Cover { patch: in_convex(&patch, center), pin: in_pin, sheath: !in_pin && in_convex(&sheath, center) }
+            Cover { patch: contains(&patch, center), pin: in_pin, sheath: !in_pin && in_convex(&sheath, center) }
         })
         .collect();
     Ok(Footprint { points, triangles, covers })
@@ -123,10 +130,11 @@ fn in_convex(outline: &[DVec2], p: DVec2) -> bool {
     })
 }
 
-/// Puts a point that is within `tolerance` of a line of an axis-parallel rectangle exactly onto it.
-fn snap(p: DVec2, rectangle: &[DVec2; 4], tolerance: f64) -> DVec2 {
+/// Puts a point that is within `tolerance` of a line of an axis-parallel rectangle, given by opposite corners, exactly
+/// onto it.
+fn snap(p: DVec2, [lo, hi]: [DVec2; 2], tolerance: f64) -> DVec2 {
     let to = |value: f64, lines: [f64; 2]| lines.into_iter().find(|l| (l - value).abs() <= tolerance).unwrap_or(value);
-    DVec2::new(to(p.x, [rectangle[0].x, rectangle[2].x]), to(p.y, [rectangle[0].y, rectangle[2].y]))
+    DVec2::new(to(p.x, [lo.x, hi.x]), to(p.y, [lo.y, hi.y]))
 }
 
 #[cfg(test)]

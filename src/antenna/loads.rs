@@ -46,12 +46,6 @@ impl PatchParams {
         CLEARANCE * self.width.min(self.length)
     }
 
-    /// How far inside the patch's edge a place is, m; negative outside.
-    #[must_use]
-    pub fn inside_patch(&self, at: DVec2) -> f64 {
-        (DVec2::new(self.width, self.length) / 2.0 - at.abs()).min_element()
-    }
-
     /// The place under the patch with most room for one more resistor; `None` if there is none that keeps clear.
     #[must_use]
     pub fn roomiest_place(&self) -> Option<DVec2> {

@@ -7,11 +7,13 @@
 pub mod design;
 mod footprint;
 pub mod loads;
+pub mod outline;
 pub mod params;
 pub mod patch;
 
 pub use design::{DesignError, FirstGuess, first_guess};
 pub use loads::{Conductor, MAX_RESISTORS, Resistor};
+pub use outline::OutlineError;
 pub use params::{Dielectric, ParamError, PatchParams};
 pub use patch::{PatchError, flat_complex};
 

@@ -1,6 +1,7 @@
 //! Parameters of the coax-fed patch antenna and their validation.
 
 use super::loads::{Conductor, MAX_RESISTORS, Resistor};
+use super::outline::OutlineError;
 use crate::geometry::{DVec2, DVec3};
 use crate::units::to_mm;
 
@@ -20,6 +21,9 @@ pub struct PatchParams {
     pub width: f64,
     /// Patch length L, along y: the resonant side.
     pub length: f64,
+    /// Corners of a patch that is no rectangle, counter-clockwise; its box is width by length about the origin. Empty for
+    /// the rectangle.
+    pub outline: Vec<DVec2>,
     /// Thickness of the patch's metal.
     pub patch_thickness: f64,
     /// Substrate height h.
@@ -91,6 +95,24 @@ pub enum ParamError {
         /// "less than" or "more than".
         bound: &'static str,
         /// The limit, mm.
+        limit_mm: f64,
+    },
+    /// The patch's outline is none.
+    #[error(transparent)]
+    Outline(#[from] OutlineError),
+    /// The feed is not under a patch that is no rectangle.
+    #[error(
+        "inset and feed_offset put the feed at ({x_mm:.4}, {y_mm:.4}) mm, which is {inside_mm:.4} mm inside the patch's \
+         outline, but must be at least {limit_mm:.4} mm: move the feed"
+    )]
+    FeedOutside {
+        /// x, mm.
+        x_mm: f64,
+        /// y, mm.
+        y_mm: f64,
+        /// How far inside the outline it is, mm; negative outside.
+        inside_mm: f64,
+        /// Least distance, mm.
         limit_mm: f64,
     },
     /// There are too many resistors.
@@ -178,6 +200,7 @@ impl PatchParams {
         self.check_lengths()?;
         self.check_ranges()?;
         self.check_fit()?;
+        self.check_outline()?;
         self.check_loads()
     }
 
@@ -258,6 +281,7 @@ pub(crate) mod tests {
         PatchParams {
             width: from_mm(10.83),
             length: from_mm(8.177),
+            outline: Vec::new(),
             patch_thickness: from_mm(0.035),
             height: from_mm(1.575),
             ground_width: from_mm(20.0),

@@ -153,6 +153,8 @@ impl Extrusion<'_> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::outline::doubled_area;
+    use super::super::outline::tests::{disc, e_shape};
     use super::super::params::tests::paper;
     use super::*;
     use std::f64::consts::TAU;
@@ -177,6 +179,17 @@ mod tests {
         for (name, expected) in volumes {
             let volume = plc.boundary(plc.region(name).expect("named region")).volume();
             assert!((volume / expected - 1.0).abs() < 1e-9, "{name}: {volume:e} against {expected:e}");
+        }
+    }
+
+    #[test]
+    fn patches_of_any_outline_give_valid_complexes_with_their_volume() {
+        for params in [disc(), e_shape()] {
+            let plc = flat_complex(&params).expect("an outline");
+            assert_eq!(plc.check(), Ok(()), "closed regions, each facet once");
+            let volume = plc.boundary(plc.region(PATCH).expect("a patch")).volume();
+            let expected = doubled_area(&params.outline) / 2.0 * params.patch_thickness;
+            assert!((volume / expected - 1.0).abs() < 1e-9, "{volume:e} against {expected:e}");
         }
     }
 

@@ -1,6 +1,7 @@
 //! `deform` and `compensate`: the whole job, its figures, and the export.
 
-use super::args::{CompensateArgs, DeformArgs, Mode, ScopeChoice};
+use super::args::{CompensateArgs, DeformArgs};
+use super::choices::{Mode, ScopeChoice};
 use super::report::{self, ExportReport, StepReport};
 use crate::io::{self, ExportOptions};
 use crate::pipeline::{self, Deformed, FiguresReport};

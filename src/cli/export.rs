@@ -1,6 +1,7 @@
 //! `export` and `verify`: geometry for other programs, and its proof.
 
-use super::args::{ExportArgs, ExportShape, Format, VerifyArgs};
+use super::args::{ExportArgs, VerifyArgs};
+use super::choices::{ExportShape, Format};
 use super::report::{ExportReport, table};
 use crate::io::{self, ExportOptions, Verification};
 use crate::pipeline;

@@ -35,11 +35,18 @@ impl Report<'_> {
         let (antenna, cage, settings) = (&self.project.antenna, self.project.cage, self.project.settings);
         let called = |name: &str| if name.is_empty() { String::new() } else { format!("{name}, ") };
         let material = |m: &MaterialSpec| format!("{}eps_r {}, tan delta {}", called(&m.name), m.eps_r, m.tan_delta);
+        let outline = match antenna.outline_mm.len() {
+            0 => String::new(),
+            n => format!(", outline of {n} points"),
+        };
         let mut rows: Vec<(String, String)> = Vec::new();
         let mut row = |name: &str, text: String| rows.push((name.to_owned(), text));
         row(
             "patch",
-            format!("W {} x L {} mm, {} mm thick", antenna.width_mm, antenna.length_mm, antenna.patch_thickness_mm),
+            format!(
+                "W {} x L {} mm, {} mm thick{}",
+                antenna.width_mm, antenna.length_mm, antenna.patch_thickness_mm, outline
+            ),
         );
         row("substrate", format!("h {} mm, {}", antenna.height_mm, material(&antenna.substrate)));
         let (wide, long) = (antenna.ground_width_mm, antenna.ground_length_mm);

@@ -9,6 +9,7 @@
 
 mod apply;
 mod args;
+mod choices;
 mod compare;
 mod deform;
 mod example;

@@ -1,7 +1,9 @@
 //! `new`: from flags to a project file.
 
-use super::args::{NewArgs, Section};
+use super::args::NewArgs;
+use super::choices::Section;
 use crate::antenna::{Dielectric, first_guess};
+use crate::io::outline::{self, LENGTH_UNITS};
 use crate::pipeline::Scene;
 use crate::project::materials::{DIELECTRICS, METALS, dielectric_named, metal_named};
 use crate::project::{
@@ -84,6 +86,13 @@ fn metal(typed: &str) -> Result<MetalSpec> {
     metal_named(typed).with_context(|| format!("\"{typed}\" names no metal, or several: see conformant new --help"))
 }
 
+/// Length of a unit by its name, m.
+fn unit(name: &str) -> Result<f64> {
+    let found = LENGTH_UNITS.iter().find(|(known, _)| known.eq_ignore_ascii_case(name));
+    let names = LENGTH_UNITS.map(|(known, _)| known).join(", ");
+    Ok(found.with_context(|| format!("--unit takes one of {names}, not \"{name}\""))?.1)
+}
+
 fn set_materials(antenna: &mut AntennaSpec, args: &NewArgs) -> Result<()> {
     if let Some(name) = &args.substrate {
         antenna.substrate = dielectric_named(name)
@@ -123,6 +132,16 @@ fn set_antenna(project: &mut Project, args: &NewArgs) -> Result<()> {
         let margin = 2.0 * MARGIN_HEIGHTS * antenna.height_mm;
         antenna.ground_width_mm = antenna.ground_width_mm.max((antenna.width_mm + margin).ceil());
         antenna.ground_length_mm = antenna.ground_length_mm.max((antenna.length_mm + margin).ceil());
+    }
+    if let Some(drawing) = &args.outline {
+        let unit = args.unit.as_deref().map(unit).transpose()?;
+        ensure!(args.tolerance > 0.0, "--tolerance must be positive");
+        antenna = antenna.with_outline(&outline::read(drawing, unit, from_mm(args.tolerance))?);
+    }
+    match args.feed[..] {
+        [] => {}
+        [x, y] => (antenna.feed_offset_mm, antenna.inset_mm) = (x, y + antenna.length_mm / 2.0),
+        _ => bail!("--feed takes two numbers, x,y"),
     }
     Ok(Edit::SetAntenna(antenna).apply(project)?)
 }

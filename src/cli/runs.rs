@@ -1,6 +1,7 @@
 //! Runs of the solver as the command line does them: with checkpoints, and results kept beside the project.
 
-use super::args::{RunArgs, StopChoice};
+use super::args::RunArgs;
+use super::choices::StopChoice;
 use crate::io::{IoError, checkpoint};
 use crate::pipeline::{
     self, Job, MeshSettings, PipelineError, RunFigures, Running, Shape, SolveSettings, Solved, StopRule, Stored,

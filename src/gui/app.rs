@@ -10,6 +10,7 @@ use super::frame::set_scale;
 use super::mesh_export::MeshExport;
 use super::mesh_session::{MeshNews, MeshSession, has_cylinder};
 use super::outbox::{Action, Outbox};
+use super::outline_dialog::OutlineDialog;
 use super::palette::Palette;
 use super::recovery::Recovery;
 use super::result_export::ResultExport;
@@ -220,6 +221,10 @@ impl App {
             Command::ClearRecent => state.recent_files.clear(),
             Command::Welcome => self.dialog = Dialog::Welcome,
             Command::Example(example) => self.ask_unsaved(ctx, Next::Example(example)),
+            Command::ImportOutline => {
+                let dialog = OutlineDialog::new(self.session.project(), &self.folder());
+                self.dialog = Dialog::Outline(Box::new(dialog));
+            }
             Command::Export => {
                 let folder = self.folder().join(format!("{}-export", self.session.name()));
                 let finished = self.session.finished();

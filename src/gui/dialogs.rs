@@ -8,6 +8,7 @@ use super::export_dialog::ExportDialog;
 use super::mesh_export::MeshExport;
 use super::notices;
 use super::outbox::{Action, Outbox};
+use super::outline_dialog::OutlineDialog;
 use super::palette::Palette;
 use super::plot_export::PlotExport;
 use super::recovery::Found;
@@ -31,6 +32,8 @@ pub(super) enum Purpose {
     Open,
     Save,
     Folder,
+    /// A drawing to read an outline from.
+    Drawing,
     /// A file to write a mesh or a table to.
     Data,
 }
@@ -76,6 +79,7 @@ pub(super) enum Dialog {
     None,
     Path(PathDialog),
     Unsaved(Next),
+    Outline(Box<OutlineDialog>),
     Export(Box<ExportDialog>),
     MeshExport(Box<MeshExport>),
     ResultExport(Box<ResultExport>),
@@ -147,10 +151,11 @@ impl PathField {
             let dialog = rfd::FileDialog::new().set_directory(folder);
             let dialog = match purpose {
                 Purpose::Folder | Purpose::Data => dialog,
+                Purpose::Drawing => dialog.add_filter("Drawing", &["dxf", "svg", "DXF", "SVG"]),
                 _ => dialog.add_filter("Conformant project", &[ENDING]),
             };
             let chosen = match purpose {
-                Purpose::Open => dialog.pick_file(),
+                Purpose::Open | Purpose::Drawing => dialog.pick_file(),
                 Purpose::Save | Purpose::Data => dialog.save_file(),
                 Purpose::Folder => dialog.pick_folder(),
             };
@@ -263,6 +268,7 @@ impl Dialog {
                 Self::None => true,
                 Self::Path(dialog) => dialog.ui(ui, out),
                 Self::Unsaved(next) => unsaved(ui, next, about.name, out),
+                Self::Outline(dialog) => dialog.ui(ui, state, out),
                 Self::Export(dialog) => dialog.ui(ui, state),
                 Self::MeshExport(dialog) => dialog.ui(ui, state, out),
                 Self::ResultExport(dialog) => dialog.ui(ui, state, out),

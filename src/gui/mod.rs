@@ -41,6 +41,7 @@ mod mesh_session;
 mod notices;
 mod operating;
 mod outbox;
+mod outline_dialog;
 mod overlay;
 mod paint;
 mod palette;

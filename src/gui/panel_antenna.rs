@@ -1,7 +1,8 @@
 //! The antenna's dimensions and materials, and a first guess of them for a wanted frequency.
 
+use super::command::Command;
 use super::field::{Number, Refused, rows, section};
-use super::outbox::Outbox;
+use super::outbox::{Action, Outbox};
 use super::panel_materials::{dielectric, metal, own_name, resistors};
 use super::theme::Tokens;
 use super::ui_state::UiState;
@@ -21,8 +22,12 @@ fn groups() -> [(&'static str, Vec<(Number, Access)>); 4] {
         (
             "Patch",
             vec![
-                (mm("width", "Width W", "Extent of the patch along x"), |a| &mut a.width_mm),
-                (mm("length", "Length L", "Extent along y: the resonant side"), |a| &mut a.length_mm),
+                (mm("width", "Width W", "Extent of the patch along x; an outline is stretched to it"), |a| {
+                    &mut a.width_mm
+                }),
+                (mm("length", "Length L", "Extent along y: the resonant side; an outline is stretched to it"), |a| {
+                    &mut a.length_mm
+                }),
                 (mm("patch_thickness", "Thickness", "Thickness of the patch's metal"), |a| &mut a.patch_thickness_mm),
             ],
         ),
@@ -81,6 +86,7 @@ pub(super) fn ui(ui: &mut Ui, project: &Project, state: &mut UiState, out: &mut 
                     let value = *access(&mut new);
                     number.row(ui, value, refused, out, |v| {
                         *access(&mut new) = v;
+                        new = new.stretched_from(antenna);
                         // Other values are another material.
                         match number.place {
                             "substrate.eps_r" | "substrate.tan_delta" => new.substrate.name.clear(),
@@ -124,9 +130,12 @@ fn before(ui: &mut Ui, place: &str, project: &Project, out: &mut Outbox) {
 /// What follows the numbers of a group.
 fn after(ui: &mut Ui, title: &str, antenna: &AntennaSpec, refused: Refused<'_>, out: &mut Outbox) {
     match title {
-        "Patch" => metal(ui, ("patch_metal", "Metal"), &antenna.patch_metal, (refused, out), |patch_metal| {
-            Edit::SetAntenna(AntennaSpec { patch_metal, ..antenna.clone() })
-        }),
+        "Patch" => {
+            outline(ui, antenna, refused, out);
+            metal(ui, ("patch_metal", "Metal"), &antenna.patch_metal, (refused, out), |patch_metal| {
+                Edit::SetAntenna(AntennaSpec { patch_metal, ..antenna.clone() })
+            });
+        }
         "Substrate" => {
             let label = ("ground_metal", "Ground metal");
             metal(ui, label, &antenna.ground_metal, (refused, out), |ground_metal| {
@@ -136,6 +145,25 @@ fn after(ui: &mut Ui, title: &str, antenna: &AntennaSpec, refused: Refused<'_>, 
         "Coaxial line" => segments(ui, antenna, refused, out),
         _ => {}
     }
+}
+
+/// What the patch's outline is, and how to change it.
+fn outline(ui: &mut Ui, antenna: &AntennaSpec, refused: Refused<'_>, out: &mut Outbox) {
+    ui.label("Outline").on_hover_text("A rectangle, or any closed line from a drawing");
+    ui.horizontal(|ui| {
+        let n = antenna.outline_mm.len();
+        ui.label(if n == 0 { "Rectangle".to_owned() } else { format!("{n} points") });
+        if ui.button("Import…").on_hover_text(Command::ImportOutline.text_and_tip().1).clicked() {
+            out.push(Action::Run(Command::ImportOutline));
+        }
+        if n > 0
+            && ui.button("Rectangle").on_hover_text("Make the patch a rectangle of this width and length").clicked()
+        {
+            out.edit("outline", Edit::SetAntenna(AntennaSpec { outline_mm: Vec::new(), ..antenna.clone() }));
+        }
+    });
+    ui.end_row();
+    refused.show(ui, "outline");
 }
 
 fn segments(ui: &mut Ui, antenna: &AntennaSpec, refused: Refused<'_>, out: &mut Outbox) {
@@ -183,6 +211,7 @@ fn guess(ui: &mut Ui, antenna: &AntennaSpec, state: &mut UiState, refused: Refus
                 let mut new = antenna.clone();
                 (new.width_mm, new.length_mm) = (rounded(guess.width), rounded(guess.length));
                 new.inset_mm = rounded(guess.inset);
+                new = new.stretched_from(antenna);
                 out.edit("guess", Edit::SetAntenna(new));
             }
         }

@@ -16,6 +16,8 @@
 //! shared facet by facet, no T-junction, no gap, no crossing; [`verify()`] proves it anew. Every file is written whole
 //! or not at all ([`write_atomic`]).
 //!
+//! A flat outline for a patch enters as DXF or SVG ([`outline`]).
+//!
 //! A field run under way is kept as a [`checkpoint`].
 //!
 //! Files are millimetres except glTF (metres, as its standard demands). Readers refuse rather than guess, say the
@@ -36,6 +38,7 @@ mod import;
 pub mod msh;
 pub mod nastran;
 pub mod obj;
+pub mod outline;
 mod parts;
 pub mod proof;
 mod rounding;

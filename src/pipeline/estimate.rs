@@ -75,7 +75,7 @@ pub fn estimate(
     let allowed = if settings.mesh.density == Density::Coarse { 5.0 * tolerance } else { tolerance };
     let inner = (fineness.inner * params.length).min(SHORTENED * (8.0 * allowed / curvature.max(1e-9)).sqrt());
     let rim = (fineness.rim * params.length).min(inner);
-    let outline = 2.0 * (params.width + params.length + params.ground_width + params.ground_length);
+    let outline = params.perimeter() + 2.0 * (params.ground_width + params.ground_length);
     let triangles =
         params.ground_width * params.ground_length / (0.433 * inner * inner) + RIM_TRIANGLES * outline / rim;
     let sphere = 4.0 / 3.0 * PI * reach.powi(3) / (0.118 * longest_air_edge(&params, settings.mesh.density).powi(3));

@@ -124,7 +124,10 @@ impl Scene {
         let center = params.feed();
         let half = DVec2::new(params.ground_width, params.ground_length) / 2.0;
         let room = (half - center.abs()).min_element();
-        let to_rim = params.inset.min(params.length - params.inset).min(params.width / 2.0 - center.x.abs());
+        let to_rim = match params.outline.is_empty() {
+            true => params.inset.min(params.length - params.inset).min(params.width / 2.0 - center.x.abs()),
+            false => params.inside_patch(center),
+        };
         RigidFeed {
             center,
             pin_fade: 0.75 * (to_rim - params.pin_radius),

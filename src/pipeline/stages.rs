@@ -226,6 +226,7 @@ fn scaled(params: &PatchParams, scale: DVec2) -> PatchParams {
     PatchParams {
         width: params.width * scale.x,
         length: params.length * scale.y,
+        outline: params.outline.iter().map(|p| *p * scale).collect(),
         inset: params.inset * scale.y,
         feed_offset: params.feed_offset * scale.x,
         resistors: params.resistors.iter().map(|r| Resistor { at: r.at * scale, ..*r }).collect(),

@@ -13,6 +13,7 @@ pub mod file;
 pub mod history;
 pub mod materials;
 mod name;
+mod outline;
 
 pub use check::ProjectError;
 pub use edit::{Edit, EditError};
@@ -52,6 +53,9 @@ pub struct Project {
 pub struct AntennaSpec {
     pub width_mm: f64,
     pub length_mm: f64,
+    /// Corners of a patch that is no rectangle.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub outline_mm: Vec<[f64; 2]>,
     pub patch_thickness_mm: f64,
     pub height_mm: f64,
     pub ground_width_mm: f64,
@@ -212,6 +216,7 @@ impl Default for AntennaSpec {
         Self {
             width_mm: 10.83,
             length_mm: 8.177,
+            outline_mm: Vec::new(),
             patch_thickness_mm: 0.035,
             height_mm: 1.575,
             ground_width_mm: 20.0,
@@ -282,6 +287,7 @@ impl AntennaSpec {
         PatchParams {
             width: from_mm(self.width_mm),
             length: from_mm(self.length_mm),
+            outline: self.outline(),
             patch_thickness: from_mm(self.patch_thickness_mm),
             height: from_mm(self.height_mm),
             ground_width: from_mm(self.ground_width_mm),

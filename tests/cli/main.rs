@@ -84,6 +84,22 @@ fn new_takes_materials_by_name_or_number_and_resistors() {
 }
 
 #[test]
+fn an_outline_from_a_drawing_is_bent_and_certified() {
+    let bench = Bench::new();
+    // An E of 10.8 x 8.2 mm with two slots.
+    let e = "M0 8.2 V0 H10.8 V8.2 H8 V3 H7.4 V8.2 H3.4 V3 H2.8 V8.2 Z";
+    fs::write(bench.path("e.svg"), format!("<svg viewBox='0 0 20 20'><path d='{e}'/></svg>")).unwrap();
+    bench.fails("new a.json --outline e.svg", 1, "does not say its unit");
+    let said = bench.ok("new a.json --outline e.svg --unit mm --feed 0,2 --bend h --radius 12");
+    assert!(said.contains("patch 10.8 x 8.2 mm"), "{said}");
+    assert!(bench.ok("info a.json").contains("outline of 12 points"), "told");
+    bench.ok("deform a.json --compensate isometric --out e");
+    bench.ok("verify e");
+    bench.fails("new b.json --outline e.svg --unit mm --feed 2.3,-2", 1, "inside the patch's outline");
+    bench.fails("new b.json --outline e.svg --unit furlong", 1, "--unit takes one of mm, cm");
+}
+
+#[test]
 fn new_sizes_the_patch_for_a_frequency() {
     let bench = Bench::new();
     bench.ok("new a.json --freq 10 --height 1.588 --eps-r 2.2");

@@ -1,6 +1,6 @@
 //! What is compared: antennas, each in its variants.
 
-use super::super::args::PaperChoice;
+use super::super::choices::PaperChoice;
 use crate::pipeline::{Scene, Shape};
 use crate::project::{BendPlane, CompensationMode, PresetEntry, PresetSpec, Project, RuleSpec};
 

@@ -10,6 +10,7 @@ use super::seeds;
 use super::sizing::Sizing;
 use super::{BlockError, BlockSettings};
 use crate::antenna::PatchParams;
+use crate::antenna::outline::contains;
 use crate::geometry::DVec2;
 use crate::geometry::predicates::orient2d;
 
@@ -71,5 +72,5 @@ fn cover(outlines: &Outlines, corners: [DVec2; 3]) -> Cover {
         (0..polygon.len()).all(|k| orient2d(polygon[k], polygon[(k + 1) % polygon.len()], center) > 0.0)
     };
     let [pin, line] = [0, 1].map(|k| outlines.polygons.get(k).is_some_and(within));
-    Cover { patch: center.abs().cmplt(outlines.patch).all(), pin, sheath: line && !pin }
+    Cover { patch: contains(&outlines.patch, center), pin, sheath: line && !pin }
 }

@@ -6,6 +6,7 @@
 
 use super::{BlockError, BlockSettings, Metal};
 use crate::antenna::PatchParams;
+use crate::antenna::outline::{edges, nearest};
 use crate::geometry::DVec2;
 use std::f64::consts::TAU;
 
@@ -50,6 +51,8 @@ impl Circle {
 pub(super) struct Sizing {
     /// Half the patch's extents, m.
     patch: DVec2,
+    /// Sides of a patch that is no rectangle, and the length wanted at each, m.
+    sides: Vec<(DVec2, DVec2, f64)>,
     rim: f64,
     inner: f64,
     /// Greatest length within the outer conductor.
@@ -87,9 +90,11 @@ impl Sizing {
             |radius, segments: usize, fewest| Circle { center: params.feed(), radius, segments: segments.max(fewest) };
         let pin = circle(params.pin_radius, params.pin_segments, MIN_SEGMENTS[0]);
         let sheath = circle(params.coax_radius, params.coax_segments, MIN_SEGMENTS[1]);
+        let rim = settings.rim.min(AIM * settings.inner);
         let sizing = Self {
             patch: DVec2::new(params.width, params.length) / 2.0,
-            rim: settings.rim.min(AIM * settings.inner),
+            sides: edges(&params.outline).map(|(a, b)| (a, b, rim.min(a.distance(b)))).collect(),
+            rim,
             inner: AIM * settings.inner,
             sheath: match settings.metal {
                 Metal::Sheet => f64::INFINITY,
@@ -107,9 +112,16 @@ impl Sizing {
 
     /// Edge length wanted at a place, m.
     pub(super) fn at(&self, p: DVec2) -> f64 {
-        let off = p.abs() - self.patch;
-        let to_rim = if off.max_element() > 0.0 { off.max(DVec2::ZERO).length() } else { -off.max_element() };
-        let from_rim = self.rim + SLOPE * (to_rim - STRIP * self.rim).max(0.0);
+        let from_rim = if self.sides.is_empty() {
+            let off = p.abs() - self.patch;
+            let to_rim = if off.max_element() > 0.0 { off.max(DVec2::ZERO).length() } else { -off.max_element() };
+            self.rim + SLOPE * (to_rim - STRIP * self.rim).max(0.0)
+        } else {
+            let from_side = |&(a, b, rim): &(DVec2, DVec2, f64)| {
+                rim + SLOPE * (nearest((a, b), p).distance(p) - STRIP * rim).max(0.0)
+            };
+            self.sides.iter().map(from_side).fold(f64::INFINITY, f64::min)
+        };
         let from_circles = self.circles.iter().map(|c| {
             let away = p.distance(c.center) - c.radius;
             let from_circle = c.segment() + SLOPE * away.abs();
@@ -123,7 +135,10 @@ impl Sizing {
     fn n_points(&self, area: f64) -> f64 {
         // Along a line, the integral of 1 / h² over the growth on both sides; triangles are near equilateral.
         let along = |length: f64, h: f64| 2.0 * length / (SLOPE * h);
-        let rim = along(4.0 * self.patch.element_sum(), self.rim);
+        let rim = match self.sides.is_empty() {
+            true => along(4.0 * self.patch.element_sum(), self.rim),
+            false => self.sides.iter().map(|&(a, b, rim)| along(a.distance(b), rim)).sum(),
+        };
         let circles: f64 = self.circles.iter().map(|c| along(c.segment() * c.segments as f64, c.segment())).sum();
         (area / self.inner.powi(2) + rim + circles) * 2.0 / 3.0_f64.sqrt()
     }

@@ -1,5 +1,7 @@
 use super::prisms::smallest_dihedral;
 use super::*;
+use crate::antenna::outline::doubled_area;
+use crate::antenna::outline::tests::{disc, e_shape};
 use crate::antenna::params::tests::paper;
 use crate::geometry::DVec2;
 use crate::tet::FaceRole;
@@ -228,6 +230,27 @@ fn edges_are_as_long_as_asked_for() {
     assert!((0.85..1.0).contains(&far), "far from the rim {far:.3} of what was asked for");
     let rim = mean(&|p| (p.y - paper().length / 2.0).abs() < 1e-9 && p.x.abs() < paper().width / 2.0) / settings.rim;
     assert!((0.95..1.05).contains(&rim), "along the rim {rim:.3} of what was asked for");
+}
+
+#[test]
+fn patches_of_any_outline_are_blocks_with_their_area() {
+    // The outer conductor's circle reaches past the disc's edge, and into a slot of the letter.
+    let near_edge = PatchParams { inset: from_mm(1.6), ..disc() };
+    let near_slot = PatchParams { feed_offset: from_mm(0.5), inset: from_mm(2.2), ..e_shape() };
+    for (params, allowed) in [(disc(), 1e-9), (near_edge, 0.01), (e_shape(), 0.01), (near_slot, 0.02)] {
+        assert_eq!(params.validate(), Ok(()), "{params:?}");
+        for kind in [KINDS[0], KINDS[2]] {
+            let block = flat(&params, &settings(kind));
+            assert_eq!(block.check(), Ok(()), "{kind:?} {params:?}");
+            if kind.0 == Metal::Sheet {
+                // Corners close to the circle are put onto it.
+                let (found, drawn) = (marked(&block, "pec_patch"), doubled_area(&params.outline) / 2.0);
+                assert!((found / drawn - 1.0).abs() < allowed, "{found:e} m2, drawn {drawn:e}");
+                let (angles, _) = quality(&block);
+                assert!(angles[0] > 4.0, "smallest dihedral angle {}", angles[0]);
+            }
+        }
+    }
 }
 
 #[test]
