@@ -113,7 +113,7 @@ pub struct NewArgs {
     #[arg(long, value_name = "MM", default_value_t = 0.02)]
     pub(super) tolerance: f64,
     /// Place of the feed from the patch's center, mm
-    #[arg(long, value_name = "X,Y", value_delimiter = ',', num_args = 1)]
+    #[arg(long, value_name = "X,Y", value_delimiter = ',', num_args = 1, allow_hyphen_values = true)]
     pub(super) feed: Vec<f64>,
     /// Substrate by name, listed below; --eps-r and --tan-delta change its values
     #[arg(long, value_name = "NAME")]
@@ -131,7 +131,7 @@ pub struct NewArgs {
     #[arg(long, value_name = "METAL")]
     pub(super) ground_metal: Option<String>,
     /// A resistor from ground to patch at a place from the patch's center, mm, and its ohm; may be given several times
-    #[arg(long, value_name = "X,Y,OHM", value_delimiter = ',', num_args = 1, action = clap::ArgAction::Append)]
+    #[arg(long, value_name = "X,Y,OHM", value_delimiter = ',', num_args = 1, allow_hyphen_values = true)]
     pub(super) resistor: Vec<f64>,
     /// Replace the file if it exists
     #[arg(long)]

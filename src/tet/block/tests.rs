@@ -234,10 +234,10 @@ fn edges_are_as_long_as_asked_for() {
 
 #[test]
 fn patches_of_any_outline_are_blocks_with_their_area() {
-    // The outer conductor's circle reaches past the disc's edge, and into a slot of the letter.
+    // The outer conductor's circle reaches past the disc's edge in both, and into a slot of the letter.
     let near_edge = PatchParams { inset: from_mm(1.6), ..disc() };
     let near_slot = PatchParams { feed_offset: from_mm(0.5), inset: from_mm(2.2), ..e_shape() };
-    for (params, allowed) in [(disc(), 1e-9), (near_edge, 0.01), (e_shape(), 0.01), (near_slot, 0.02)] {
+    for (params, allowed) in [(disc(), 1e-3), (near_edge, 0.01), (e_shape(), 0.01), (near_slot, 0.02)] {
         assert_eq!(params.validate(), Ok(()), "{params:?}");
         for kind in [KINDS[0], KINDS[2]] {
             let block = flat(&params, &settings(kind));
