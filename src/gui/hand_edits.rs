@@ -34,14 +34,9 @@ pub(super) fn place_edit(
     vertices: &[u32],
     (axis, target_mm): (usize, f64),
 ) -> Edit {
-    let share = |&vertex: &u32| {
-        let at = pose.vertices.get(vertex as usize)?;
-        let mut by = DVec3::ZERO;
-        by[axis] = target_mm - to_mm(at[axis]);
-        Some(Share { vertex, weight: 1.0, by })
-    };
-    let shares = mirror.applied(&pose.cage, vertices.iter().filter_map(share).collect());
-    Edit::MoveVertices(displaced(&project.hand_edits, &shares).into_iter().collect())
+    coordinate_edit(project, pose, mirror, vertices, axis, |vertex| {
+        Some(target_mm - to_mm(pose.vertices.get(vertex as usize)?[axis]))
+    })
 }
 
 /// The edit that sets one coordinate of the offsets of vertices, and that of their partners as the mirror has it.
@@ -52,13 +47,28 @@ pub(super) fn offset_edit(
     vertices: &[u32],
     (axis, target_mm): (usize, f64),
 ) -> Edit {
+    coordinate_edit(project, pose, mirror, vertices, axis, |vertex| {
+        Some(target_mm - project.hand_edits.get(&vertex).map_or(0.0, |offset| offset[axis]))
+    })
+}
+
+/// The edit that moves vertices along an axis, and their partners as the mirror has it.
+///
+/// * `by_mm`: how far, for a vertex; `None` leaves it out.
+fn coordinate_edit(
+    project: &Project,
+    pose: &Pose,
+    mirror: Mirror,
+    vertices: &[u32],
+    axis: usize,
+    by_mm: impl Fn(u32) -> Option<f64>,
+) -> Edit {
     let share = |&vertex: &u32| {
-        let offset = project.hand_edits.get(&vertex).copied().unwrap_or_default();
         let mut by = DVec3::ZERO;
-        by[axis] = target_mm - offset[axis];
-        Share { vertex, weight: 1.0, by }
+        by[axis] = by_mm(vertex)?;
+        Some(Share { vertex, weight: 1.0, by })
     };
-    let shares = mirror.applied(&pose.cage, vertices.iter().map(share).collect());
+    let shares = mirror.applied(&pose.cage, vertices.iter().filter_map(share).collect());
     Edit::MoveVertices(displaced(&project.hand_edits, &shares).into_iter().collect())
 }
 
