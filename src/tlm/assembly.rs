@@ -176,14 +176,14 @@ impl<'a> Assembly<'a> {
             .collect();
         keyed.par_sort_unstable();
         let ends = [1, 2].map(|part| keyed.partition_point(|k| k.0 < part));
-        let cells = keyed.into_iter().map(|(_, _, t)| (ascending(mesh.tets[t].vertices), t)).collect();
+        let cells: Vec<([VertexId; 4], usize)> =
+            keyed.into_iter().map(|(_, _, t)| (ascending(mesh.tets[t].vertices), t)).collect();
         let rim = if *edge_correction { sheet_edge::rim(mesh) } else { HashSet::new() };
         let of_sphere: Vec<[VertexId; 3]> = faces_with(mesh, FaceRole::Outer).collect();
         let is_air = |&(_, tet): &(_, usize)| {
             let region = mesh.tets[tet].region;
             (mesh.regions[region.index()].eps_r, loads.mu_r(region)) == (1.0, 1.0)
         };
-        let cells: Vec<([VertexId; 4], usize)> = cells;
         let sphere = OuterSphere::new(&of_sphere, &mesh.vertices, *wave_degrees);
         let sphere = sphere.filter(|_| cells[ends[1]..].iter().all(is_air));
         Ok(Self { mesh, cells, ends, sphere, faces, loads: loads.clone(), rim, loss_freq: *loss_freq })
