@@ -160,7 +160,7 @@ fn divide(cdt: &Cdt, nodes: &[usize], rim: &[usize]) -> Vec<Vec<[usize; 3]>> {
     let triangles: Vec<[usize; 3]> = cdt.inner_faces().map(|f| f.vertices().map(|v| nodes[v.index()])).collect();
     let mut left: HashMap<[usize; 2], usize> = HashMap::new();
     for (t, corners) in triangles.iter().enumerate() {
-        (0..3).for_each(|k| drop(left.insert([corners[k], corners[(k + 1) % 3]], t)));
+        left.extend((0..3).map(|k| ([corners[k], corners[(k + 1) % 3]], t)));
     }
     let walls: HashSet<[usize; 2]> = cdt
         .undirected_edges()

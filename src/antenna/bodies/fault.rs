@@ -19,7 +19,9 @@ pub enum BodyFault {
         tolerance: f64,
     },
     /// Nothing, or too much.
-    #[error("{bodies} bodies with {triangles} triangles: there must be one body or more, of at most {MAX_TRIANGLES} triangles")]
+    #[error(
+        "{bodies} bodies with {triangles} triangles: there must be one body or more, of at most {MAX_TRIANGLES} triangles"
+    )]
     Count {
         /// Number of bodies.
         bodies: usize,

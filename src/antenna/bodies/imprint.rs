@@ -23,7 +23,10 @@ impl Merge {
 
     /// The vertex within the tolerance of a place, which is made where there is none.
     pub(super) fn vertex(&mut self, p: DVec3, vertices: &mut Vec<DVec3>) -> usize {
-        #[allow(clippy::cast_possible_truncation, reason = "saturates far from any antenna, where cells merely fill up")]
+        #[allow(
+            clippy::cast_possible_truncation,
+            reason = "saturates far from any antenna, where cells merely fill up"
+        )]
         let cell = (p / self.tolerance).floor().to_array().map(|c| c as i64);
         let around = (0..27).map(|k| [k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1]);
         let near = around
@@ -148,7 +151,8 @@ fn crossing([a, b]: [DVec3; 2], [c, d]: [DVec3; 2], tolerance: f64) -> Option<DV
     let (s, t) = (v.cross(w).dot(normal) / square, u.cross(w).dot(normal) / square);
     let (p, q) = (a + u * s, c + v * t);
     let is_between = (0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t);
-    let is_at_end = [a, b].iter().any(|e| e.distance(p) <= tolerance) || [c, d].iter().any(|e| e.distance(q) <= tolerance);
+    let is_at_end =
+        [a, b].iter().any(|e| e.distance(p) <= tolerance) || [c, d].iter().any(|e| e.distance(q) <= tolerance);
     (is_between && !is_at_end && p.distance(q) <= tolerance).then(|| p.midpoint(q))
 }
 
