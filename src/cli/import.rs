@@ -70,8 +70,13 @@ pub(super) fn run(args: &ImportArgs) -> Result<()> {
             report.faults = faults.iter().map(FaultReport::of).collect();
         }
     }
-    super::print(&if args.json { serde_json::to_string_pretty(&report)? } else { report.text() })?;
-    ensure!(report.faults.is_empty(), "the bodies were not imported: {} to mend", report.faults.len());
+    if args.json {
+        super::print(&serde_json::to_string_pretty(&report)?)?;
+    } else if report.faults.is_empty() {
+        super::print(&report.text())?;
+    }
+    let faults: Vec<&str> = report.faults.iter().map(|f| f.message.as_str()).collect();
+    ensure!(faults.is_empty(), "the bodies cannot be welded:\n  {}", faults.join("\n  "));
     Ok(())
 }
 
@@ -156,11 +161,8 @@ impl Report {
             vec![b.name.clone(), b.kind.to_string(), b.triangles.to_string(), format!("{:.6} mm3", b.volume_mm3)]
         };
         let rows: Vec<_> = std::iter::once(head).chain(self.bodies.iter().map(row)).collect();
-        let mut parts = vec![table(&rows), String::new()];
-        if self.faults.is_empty() {
-            parts.push(format!("closed, welded, {} facets shared", self.shared_facets));
-        }
-        parts.extend(self.faults.iter().map(|f| f.message.clone()));
+        let welded = format!("all closed; welded, with {} facets shared", self.shared_facets);
+        let mut parts = vec![table(&rows), String::new(), welded];
         parts.extend(self.project.as_ref().map(|p| format!("wrote {p}")));
         parts.join("\n")
     }
