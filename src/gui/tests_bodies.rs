@@ -3,7 +3,7 @@
 use super::command::Command;
 use super::dialogs::Dialog;
 use super::outbox::Action;
-use super::tests::{Window, project, settle, window};
+use super::tests::{Window, lay_out, project, settle, window};
 use super::ui_state::Tab;
 use crate::io::{ExportOptions, export};
 use crate::pipeline::flat;
@@ -26,8 +26,9 @@ fn add(window: &mut Window, path: &Path) {
     let Dialog::Bodies(dialog) = &mut window.state_mut().dialog else { panic!("the dialog is open") };
     dialog.field.text = path.display().to_string();
     window.run_steps(2);
+    lay_out(window);
     window.get_by_label("Add file").click();
-    window.run_steps(2);
+    lay_out(window);
 }
 
 /// Waits until the dialog says something.
@@ -38,6 +39,7 @@ fn wait_for(window: &mut Window, said: &str) {
         std::thread::sleep(Duration::from_millis(10));
         window.run_steps(1);
     }
+    lay_out(window);
 }
 
 #[test]
