@@ -29,6 +29,7 @@ mod edit_overlay;
 mod edit_ui;
 mod export_dialog;
 mod field;
+mod file_field;
 mod files;
 mod frame;
 mod guard;

@@ -18,6 +18,8 @@ pub mod job;
 pub mod live;
 mod loads;
 mod looks;
+#[cfg(test)]
+pub(crate) mod made_up;
 mod mesh;
 pub mod mesh_job;
 mod retreat;
