@@ -36,6 +36,7 @@ mod guard;
 mod hand_edits;
 mod heat;
 mod keys;
+mod mark_overlay;
 mod mesh_export;
 mod mesh_scene;
 mod mesh_session;

@@ -7,6 +7,7 @@
 
 use super::PipelineError;
 use super::fields::{Columns, Fields};
+use super::marks::marks;
 use super::scene::{Scene, same_rest};
 use super::stages::{Deformed, Stages};
 use crate::antenna::{PATCH, SUBSTRATE};
@@ -90,6 +91,7 @@ impl Live {
         Ok(Deformed {
             cage: Arc::clone(&scene.cage),
             posed,
+            marks: marks(&self.stages.built, &self.stages.deformed.flat, &positions),
             flat: Arc::clone(&self.stages.deformed.flat),
             positions,
             fields,

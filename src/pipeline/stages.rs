@@ -2,6 +2,7 @@
 
 use super::PipelineError;
 use super::fields::{Columns, Fields};
+use super::marks::{Mark, marks};
 use super::scene::Scene;
 use crate::antenna::{PATCH, PatchParams, Resistor, flat_complex};
 use crate::cage::Cage;
@@ -30,6 +31,8 @@ pub struct Deformed {
     pub flat: Arc<Plc>,
     /// Deformed positions of the flat surface's vertices, m.
     pub positions: Vec<DVec3>,
+    /// Where feed and resistors meet the patch.
+    pub marks: Vec<Mark>,
     /// Local distortion.
     pub fields: Fields,
     /// Distortion figures.
@@ -108,6 +111,7 @@ pub fn run(project: &Project, task: &Task) -> Result<Stages, PipelineError> {
         cage: Arc::clone(&scene.cage),
         posed,
         fields,
+        marks: marks(&built, &surface.flat, &positions),
         flat: Arc::new(surface.flat),
         positions,
         figures,
