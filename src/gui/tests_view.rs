@@ -42,7 +42,7 @@ fn before_and_after_are_compared_and_looked_at_without_changing_the_project() {
     run(&mut window, Command::Compare);
     until(&mut window, "a comparison", |app| app.compare.compared().is_some());
     let strain = |mode| match window.state().compare.on_show(mode) {
-        Some(OnShow { deformed, .. }) => deformed.figures.patch_strain,
+        Some(OnShow { deformed, .. }) => deformed.figures.as_ref().map_or(f64::NAN, |f| f.patch_strain),
         None => f64::NAN,
     };
     let [raw, wl, isometric] = crate::pipeline::compare_job::MODES.map(strain);

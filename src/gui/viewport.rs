@@ -103,7 +103,7 @@ impl Frame<'_> {
     }
 
     fn subject(&self) -> Subject<'_> {
-        let drawn = &self.session.project().antenna;
+        let drawn = self.session.project();
         Subject { on_show: self.on_show, drawn, pose: self.pose, is_fixed: self.preview.is_some() }
     }
 

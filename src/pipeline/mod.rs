@@ -40,6 +40,6 @@ pub use mesh::{Density, MeshSettings, Meshed, Shape, mesh};
 pub use retreat::retreat;
 pub use scene::Scene;
 pub use solve::{Running, SolveSettings, Solved, StopRule, solve};
-pub use stages::{Deformed, Stages, apply_cage, deform, exact_cylinder, flat, run};
+pub use stages::{Deformed, Stages, Template, apply_cage, deform, exact_cylinder, flat, run};
 pub use stored::{Job, RunFigures, Stored, results_dir};
 pub use summary::{FiguresReport, summary};

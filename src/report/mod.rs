@@ -170,7 +170,7 @@ mod tests {
         assert!(check_tags(&html) > 200, "a whole page");
         assert_closed(&html);
         assert!(html.contains("<h1>wrist &lt;b&gt;&amp; &quot;co&quot;</h1>") && !html.contains("<raw>"), "escaped");
-        let f = &deformed.figures;
+        let f = deformed.figures.as_ref().expect("the template's");
         let numbers = [
             format!("{:+.2} %", 100.0 * f.rho_patch),
             format!("{:.3} mm", f.length * 1e3),
