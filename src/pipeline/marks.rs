@@ -81,12 +81,10 @@ mod tests {
             // The patch alone is scaled by WL, and the places on it with it.
             project.settings = Settings { compensation, scope: ScopeSpec::Patch, ..project.settings };
             let stages = run(&project, &Task::default()).expect("it can be bent");
-            let map = Sheet {
-                scale: stages.compensated.patch_scale,
-                warp: &stages.compensated.warp,
-                map: &stages.compensated.map,
-            };
-            let params = project.antenna.to_params();
+            let template = stages.template.as_ref().expect("no bodies of its own");
+            let compensated = &template.compensated;
+            let map = Sheet { scale: compensated.patch_scale, warp: &compensated.warp, map: &compensated.map };
+            let params = &template.params;
             let places = [params.feed().extend(0.0), params.resistors[0].at.extend(0.0)];
             let images = map.jacobians(&places).expect("inside the cage");
             let marks = &stages.deformed.marks;

@@ -32,7 +32,7 @@ pub struct Deformed {
     pub flat: Arc<Plc>,
     /// Deformed positions of the flat surface's vertices, m.
     pub positions: Vec<DVec3>,
-    /// Where feed and resistors meet the patch.
+    /// Where feed and resistors of the template meet the patch.
     pub marks: Vec<Mark>,
     /// Local distortion.
     pub fields: Fields,
@@ -131,7 +131,7 @@ fn run_template(project: &Project, task: &Task) -> Result<Stages, PipelineError>
         cage: Arc::clone(&scene.cage),
         posed,
         fields,
-        marks: marks(&built, &surface.flat, &positions),
+        marks: marks(built, &surface.flat, &positions),
         flat: Arc::new(surface.flat),
         positions,
         figures: Some(figures),
@@ -155,6 +155,7 @@ fn run_bodies(project: &Project, bodies: &BodiesSpec, task: &Task) -> Result<Sta
     let deformed = Deformed {
         cage: Arc::clone(&scene.cage),
         posed,
+        marks: Vec::new(),
         fields: Fields::new(&surface.flat, &reference, &surface.images),
         flat: Arc::new(surface.flat),
         positions: surface.images,
