@@ -32,6 +32,8 @@ use egui::{Rect, Ui, ViewportCommand};
 use std::path::{Path, PathBuf};
 
 const STATE_KEY: &str = "window";
+/// Said of a command that nothing carries out: a fault of the program that a test looks for.
+pub(super) const UNKNOWN: &str = "Nothing carries out this command";
 
 /// The window's application.
 #[derive(Debug)]
@@ -275,8 +277,8 @@ impl App {
             Command::Compare => self.compare.start(self.session.project()),
             Command::Palette => self.dialog = Dialog::Palette(Palette::default()),
             Command::Keys => self.dialog = Dialog::Keys,
-            _ if self.run_edit(command) => {}
-            _ => self.run_view(ctx, command),
+            _ if self.run_edit(command) || self.run_view(ctx, command) => {}
+            _ => self.messages.say(Weight::Error, &format!("{UNKNOWN}: \"{}\"", command.text_and_tip().0)),
         }
     }
 

@@ -32,6 +32,24 @@ pub(super) fn settle(window: &mut Window) {
     window.step();
 }
 
+/// Runs a command, and lets a dialog that it opens find its size.
+pub(super) fn run(window: &mut Window, command: Command) {
+    let ctx = window.ctx.clone();
+    window.state_mut().carry_out(&ctx, Action::Run(command));
+    lay_out(window);
+}
+
+/// Steps until something is so; generous, because machines are slow and busy.
+pub(super) fn until(window: &mut Window, what: &str, is_so: impl Fn(&App) -> bool) {
+    let start = Instant::now();
+    while !is_so(window.state()) {
+        assert!(start.elapsed() < Duration::from_secs(300), "{what} does not happen");
+        std::thread::sleep(Duration::from_millis(5));
+        window.step();
+    }
+    lay_out(window);
+}
+
 pub(super) fn project(window: &Window) -> Project {
     window.state().session.project().clone()
 }

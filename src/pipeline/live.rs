@@ -7,6 +7,7 @@
 
 use super::PipelineError;
 use super::fields::{Columns, Fields};
+use super::marks::marks;
 use super::scene::{Scene, same_rest};
 use super::stages::{Deformed, Stages, Template};
 use crate::antenna::{PATCH, SUBSTRATE};
@@ -87,13 +88,14 @@ impl Live {
         let mut positions: Vec<DVec3> = moved.iter().map(|p| glam::Vec3::from_array(*p).as_dvec3()).collect();
         self.posed = Some((pose.clone(), moved));
         let mut figures = None;
-        let mut thickness = Vec::new();
+        let (mut thickness, mut placed) = (Vec::new(), Vec::new());
         if let Some(gauges) = &self.gauges {
             let Template { built, compensated, .. } = &gauges.template;
             let feed = Scene::feed(built);
             let map = GreenMap::new(Arc::clone(&scene.green), pose.clone());
             let frame = feed_frame(&map, &compensated.warp, &feed)?;
             sweep_line(&feed, &frame, &self.stages.placement, &mut positions)?;
+            placed = marks(built, &self.stages.deformed.flat, &positions);
             figures = self.figures(&scene, gauges, &pose, &positions, project.settings.fit_orders);
             let images = gauges.thickness.apply(&pose);
             let images: Vec<DVec3> = images.into_iter().map(|p| glam::Vec3::from_array(p).as_dvec3()).collect();
@@ -108,6 +110,7 @@ impl Live {
         Ok(Deformed {
             cage: Arc::clone(&scene.cage),
             posed,
+            marks: placed,
             flat: Arc::clone(&self.stages.deformed.flat),
             positions,
             fields,

@@ -18,6 +18,9 @@ pub mod job;
 pub mod live;
 mod loads;
 mod looks;
+#[cfg(test)]
+pub(crate) mod made_up;
+mod marks;
 mod mesh;
 pub mod mesh_job;
 mod retreat;
@@ -32,6 +35,7 @@ pub mod worker;
 pub use error::PipelineError;
 pub use estimate::{Estimate, estimate};
 pub use fields::Fields;
+pub use marks::{Mark, MarkKind};
 pub use mesh::{Density, MeshSettings, Meshed, Shape, mesh};
 pub use retreat::retreat;
 pub use scene::Scene;

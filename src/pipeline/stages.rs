@@ -2,6 +2,7 @@
 
 use super::PipelineError;
 use super::fields::{Columns, Fields};
+use super::marks::{Mark, marks};
 use super::scene::Scene;
 use crate::antenna::{PATCH, PatchParams, Resistor, flat_complex};
 use crate::cage::Cage;
@@ -31,6 +32,8 @@ pub struct Deformed {
     pub flat: Arc<Plc>,
     /// Deformed positions of the flat surface's vertices, m.
     pub positions: Vec<DVec3>,
+    /// Where feed and resistors of the template meet the patch.
+    pub marks: Vec<Mark>,
     /// Local distortion.
     pub fields: Fields,
     /// Distortion figures of the patch's template; none of imported bodies.
@@ -128,6 +131,7 @@ fn run_template(project: &Project, task: &Task) -> Result<Stages, PipelineError>
         cage: Arc::clone(&scene.cage),
         posed,
         fields,
+        marks: marks(built, &surface.flat, &positions),
         flat: Arc::new(surface.flat),
         positions,
         figures: Some(figures),
@@ -151,6 +155,7 @@ fn run_bodies(project: &Project, bodies: &BodiesSpec, task: &Task) -> Result<Sta
     let deformed = Deformed {
         cage: Arc::clone(&scene.cage),
         posed,
+        marks: Vec::new(),
         fields: Fields::new(&surface.flat, &reference, &surface.images),
         flat: Arc::new(surface.flat),
         positions: surface.images,
