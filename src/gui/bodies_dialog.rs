@@ -211,7 +211,7 @@ impl BodiesDialog {
                 (solid.name.clone(), kind.clone(), format!("{n} triangles; material in the file: {material}"))
             })
             .collect();
-        ScrollArea::vertical().id_salt("bodies").max_height(LIST_HEIGHT).show(ui, |ui| {
+        ScrollArea::vertical().id_salt("body list").max_height(LIST_HEIGHT).show(ui, |ui| {
             if let Some((k, kind)) = body_rows(ui, &notes, &self.own) {
                 self.chosen.insert(notes[k].0.clone(), kind);
             }
