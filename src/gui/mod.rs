@@ -89,6 +89,8 @@ mod tests_materials;
 #[cfg(test)]
 mod tests_mesh;
 #[cfg(test)]
+mod tests_pictures;
+#[cfg(test)]
 mod tests_random;
 #[cfg(test)]
 mod tests_safety;
