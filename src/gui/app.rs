@@ -1,5 +1,6 @@
 //! The window: collects replies, draws the panels, carries out what they ask for.
 
+use super::bodies_dialog::BodiesDialog;
 use super::command::{Command, Facts};
 use super::compare_session::CompareSession;
 use super::dialogs::{About, Dialog, Next};
@@ -121,6 +122,7 @@ impl App {
             shows_results: self.state.solve.shows_results,
             has_pattern: self.solve.runs().iter().any(|run| !run.result.patterns.is_empty()),
             shows_pattern: self.state.solve.shows_pattern,
+            has_bodies: project.bodies.is_some(),
             compensates: project.settings.compensation != CompensationMode::None,
             orthographic: self.state.camera.projection == Projection::Orthographic,
             is_painted: self.state.heat != Heat::None,
@@ -226,6 +228,10 @@ impl App {
             Command::ImportOutline => {
                 let dialog = OutlineDialog::new(self.session.project(), &self.folder());
                 self.dialog = Dialog::Outline(Box::new(dialog));
+            }
+            Command::ImportBodies => {
+                let dialog = BodiesDialog::new(&self.session.project().materials, &self.folder());
+                self.dialog = Dialog::Bodies(Box::new(dialog));
             }
             Command::Export => {
                 let folder = self.folder().join(format!("{}-export", self.session.name()));

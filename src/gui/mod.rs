@@ -19,6 +19,8 @@
 
 mod app;
 mod bars;
+mod bodies_dialog;
+mod body_rows;
 mod command;
 mod command_input;
 mod compare_session;
@@ -48,6 +50,7 @@ mod overlay;
 mod paint;
 mod palette;
 mod panel_antenna;
+mod panel_bodies;
 mod panel_cage;
 mod panel_compare;
 mod panel_compensation;
@@ -81,6 +84,8 @@ mod solve_session;
 mod status;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_bodies;
 #[cfg(test)]
 mod tests_edit;
 #[cfg(test)]
