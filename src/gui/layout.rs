@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 /// Widths of the sides at first, points: all inputs fit, and 1280 points leave the view the larger half.
 const WIDTHS: [f32; 2] = [312.0, 316.0];
 /// Least width and height of what lies beside or below the view, points, and the greatest part of the room.
-const LEAST: [f32; 2] = [260.0, 120.0];
+const LEAST: [f32; 2] = [260.0, 160.0];
 const GREATEST: f32 = 0.6;
 
 /// Something that is shown in a tile.

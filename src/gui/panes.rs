@@ -184,6 +184,14 @@ impl Behavior<Pane> for Panes<'_> {
         }
     }
 
+    fn drag_preview_stroke(&self, _: &Visuals) -> Stroke {
+        Stroke::new(1.0, self.tokens.accent)
+    }
+
+    fn drag_preview_color(&self, _: &Visuals) -> Color32 {
+        self.tokens.accent.gamma_multiply(0.25)
+    }
+
     fn tab_bar_color(&self, _: &Visuals) -> Color32 {
         self.tokens.button[0]
     }
