@@ -1,9 +1,11 @@
-//! The flat antenna: a coax-fed rectangular patch, its parameters, a first guess of them, and its surface complex.
+//! The flat antenna: a coax-fed patch, its parameters, a first guess of them, and its surface complex; or bodies of the
+//! user's own, welded into such a complex ([`bodies`]).
 //!
 //! Frame: the patch's bottom plane is z = 0 with the patch above it and substrate and ground below; x runs across the
 //! width W, y along the resonant length L, the patch's center is the origin. The feed is a coaxial line from below
 //! whose inner conductor (the pin) passes through ground and substrate to the patch.
 
+pub mod bodies;
 pub mod design;
 mod footprint;
 pub mod loads;
@@ -11,6 +13,7 @@ pub mod outline;
 pub mod params;
 pub mod patch;
 
+pub use bodies::{Body, BodyFault};
 pub use design::{DesignError, FirstGuess, first_guess};
 pub use loads::{Conductor, MAX_RESISTORS, Resistor};
 pub use outline::OutlineError;

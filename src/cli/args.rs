@@ -24,6 +24,8 @@ pub(super) struct Arguments {
 pub enum Command {
     /// Write a new project file
     New(NewArgs),
+    /// Check and weld closed bodies of other programs, and make a project of them
+    Import(ImportArgs),
     /// Compute the deformed antenna, print its figures and export it with certificate
     Deform(DeformArgs),
     /// Compensate and print the iterations
@@ -46,6 +48,40 @@ pub enum Command {
     Info(InfoArgs),
     /// Carry points through any closed triangle cage, numbers as they stand
     Apply(ApplyArgs),
+}
+
+/// Arguments of `import`.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Each body must be closed: a solid of an STL file, a group or object of an OBJ file, a node of a \
+    binary glTF file. Bodies that touch share their interface afterwards; overlaps and open bodies are refused, with \
+    the places."
+)]
+pub struct ImportArgs {
+    /// STL, OBJ or GLB files
+    #[arg(required = true)]
+    pub(super) files: Vec<PathBuf>,
+    /// Unit of STL and OBJ files: mm, cm, m, um, in or mil; glTF is always in metres
+    #[arg(long, default_value = "mm")]
+    pub(super) unit: String,
+    /// A body, or all bodies of a material of this name, is a perfect conductor; may be given several times
+    #[arg(long, value_name = "NAME")]
+    pub(super) metal: Vec<String>,
+    /// A body, or all bodies of a material of this name, is a dielectric; may be given several times
+    #[arg(long, value_name = "NAME=EPS_R[,TAN_DELTA]")]
+    pub(super) dielectric: Vec<String>,
+    /// Distance within which two places become one, mm
+    #[arg(long, value_name = "MM", default_value_t = crate::project::WELD_MM)]
+    pub(super) weld: f64,
+    /// Project file to write; without it the bodies are checked only
+    #[arg(long, value_name = "JSON")]
+    pub(super) out: Option<PathBuf>,
+    /// Replace the file if it exists
+    #[arg(long)]
+    pub(super) force: bool,
+    /// Print JSON
+    #[arg(long)]
+    pub(super) json: bool,
 }
 
 /// Arguments of `report`.

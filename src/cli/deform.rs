@@ -17,7 +17,7 @@ struct Report<'a> {
     /// The project file.
     project: String,
     compensation: CompensationReport,
-    figures: FiguresReport,
+    figures: Option<FiguresReport>,
     /// The same figures of the exact cylinder that the bend aims at; null for other shapes.
     exact_cylinder: Option<FiguresReport>,
     surface: SurfaceReport,
@@ -100,7 +100,7 @@ fn report_of<'a>(path: &Path, project: &Project, deformed: &Deformed, export: Op
             iterations: deformed.compensation.len().saturating_sub(1),
             steps: deformed.compensation.iter().map(Into::into).collect(),
         },
-        figures: (&deformed.figures).into(),
+        figures: deformed.figures.as_ref().map(Into::into),
         exact_cylinder: deformed.ideal.as_ref().map(Into::into),
         surface: SurfaceReport { vertices: deformed.flat.vertices.len(), triangles: deformed.flat.facets.len() },
         export,
@@ -123,7 +123,10 @@ pub(super) fn text(project: &Project, deformed: &Deformed, export: Option<&Expor
     if !deformed.compensation.is_empty() {
         parts.push(format!("\n{}", report::steps_text(&deformed.compensation)));
     }
-    parts.push(format!("\n{}\n", report::figures_text(&deformed.figures, deformed.ideal.as_ref())));
+    parts.push(match &deformed.figures {
+        Some(figures) => format!("\n{}\n", report::figures_text(figures, deformed.ideal.as_ref())),
+        None => "figures       none: they are the patch template's, and these are imported bodies".to_owned(),
+    });
     parts.push(format!(
         "surface       {} vertices, {} triangles, in {:.2} s",
         deformed.flat.vertices.len(),

@@ -3,7 +3,7 @@
 use super::args::InfoArgs;
 use super::report::table;
 use crate::pipeline::Scene;
-use crate::project::{MaterialSpec, MetalSpec, PresetSpec, Project, ResistorSpec, file};
+use crate::project::{AntennaSpec, MaterialSpec, MetalSpec, PresetSpec, Project, ResistorSpec, file};
 use anyhow::Result;
 use serde::Serialize;
 
@@ -32,43 +32,12 @@ pub(super) fn run(args: &InfoArgs) -> Result<()> {
 
 impl Report<'_> {
     fn text(&self) -> String {
-        let (antenna, cage, settings) = (&self.project.antenna, self.project.cage, self.project.settings);
-        let called = |name: &str| if name.is_empty() { String::new() } else { format!("{name}, ") };
-        let material = |m: &MaterialSpec| format!("{}eps_r {}, tan delta {}", called(&m.name), m.eps_r, m.tan_delta);
-        let outline = match antenna.outline_mm.len() {
-            0 => String::new(),
-            n => format!(", outline of {n} points"),
+        let (cage, settings) = (self.project.cage, self.project.settings);
+        let mut rows = match &self.project.bodies {
+            Some(bodies) => bodies.bodies.iter().map(|b| (b.name.clone(), b.kind.to_string())).collect(),
+            None => antenna_rows(&self.project.antenna),
         };
-        let mut rows: Vec<(String, String)> = Vec::new();
         let mut row = |name: &str, text: String| rows.push((name.to_owned(), text));
-        row(
-            "patch",
-            format!(
-                "W {} x L {} mm, {} mm thick{}",
-                antenna.width_mm, antenna.length_mm, antenna.patch_thickness_mm, outline
-            ),
-        );
-        row("substrate", format!("h {} mm, {}", antenna.height_mm, material(&antenna.substrate)));
-        let (wide, long) = (antenna.ground_width_mm, antenna.ground_length_mm);
-        row("ground", format!("{wide} x {long} mm, {} mm thick", antenna.ground_thickness_mm));
-        row("feed", format!("inset {} mm, offset {} mm", antenna.inset_mm, antenna.feed_offset_mm));
-        let (pin, outer) = (antenna.pin_radius_mm, antenna.coax_radius_mm);
-        row(
-            "coax",
-            format!(
-                "pin {pin} mm, outer {outer} mm, {} mm long, {}",
-                antenna.coax_length_mm,
-                material(&antenna.sheath)
-            ),
-        );
-        for (name, metal) in [("patch metal", &antenna.patch_metal), ("ground metal", &antenna.ground_metal)] {
-            if let MetalSpec::Sheet { name: material, ohm_per_square } = metal {
-                row(name, format!("{}{ohm_per_square} ohm per square", called(material)));
-            }
-        }
-        for (i, ResistorSpec { x_mm, y_mm, ohm }) in antenna.resistors.iter().enumerate() {
-            row(&format!("resistor {}", i + 1), format!("{ohm} ohm at ({x_mm}, {y_mm}) mm, from ground to patch"));
-        }
         let ([dx, dy, dz], [nx, ny]) = (cage.padding_mm, cage.segments);
         let counts = format!("{} vertices, {} faces", self.cage_vertices, self.cage_faces);
         row("cage", format!("padding {dx}, {dy}, {dz} mm, {nx} x {ny} segments: {counts}"));
@@ -88,6 +57,43 @@ impl Report<'_> {
         let width = table(&names).lines().map(|l| l.chars().count()).max().unwrap_or(0);
         rows.iter().map(|(name, text)| format!("{name:<width$}  {text}")).collect::<Vec<_>>().join("\n")
     }
+}
+
+/// The template's dimensions and materials.
+fn antenna_rows(antenna: &AntennaSpec) -> Vec<(String, String)> {
+    let called = |name: &str| if name.is_empty() { String::new() } else { format!("{name}, ") };
+    let material = |m: &MaterialSpec| format!("{}eps_r {}, tan delta {}", called(&m.name), m.eps_r, m.tan_delta);
+    let outline = match antenna.outline_mm.len() {
+        0 => String::new(),
+        n => format!(", outline of {n} points"),
+    };
+    let mut rows: Vec<(String, String)> = Vec::new();
+    let mut row = |name: &str, text: String| rows.push((name.to_owned(), text));
+    row(
+        "patch",
+        format!(
+            "W {} x L {} mm, {} mm thick{}",
+            antenna.width_mm, antenna.length_mm, antenna.patch_thickness_mm, outline
+        ),
+    );
+    row("substrate", format!("h {} mm, {}", antenna.height_mm, material(&antenna.substrate)));
+    let (wide, long) = (antenna.ground_width_mm, antenna.ground_length_mm);
+    row("ground", format!("{wide} x {long} mm, {} mm thick", antenna.ground_thickness_mm));
+    row("feed", format!("inset {} mm, offset {} mm", antenna.inset_mm, antenna.feed_offset_mm));
+    let (pin, outer) = (antenna.pin_radius_mm, antenna.coax_radius_mm);
+    row(
+        "coax",
+        format!("pin {pin} mm, outer {outer} mm, {} mm long, {}", antenna.coax_length_mm, material(&antenna.sheath)),
+    );
+    for (name, metal) in [("patch metal", &antenna.patch_metal), ("ground metal", &antenna.ground_metal)] {
+        if let MetalSpec::Sheet { name: material, ohm_per_square } = metal {
+            row(name, format!("{}{ohm_per_square} ohm per square", called(material)));
+        }
+    }
+    for (i, ResistorSpec { x_mm, y_mm, ohm }) in antenna.resistors.iter().enumerate() {
+        row(&format!("resistor {}", i + 1), format!("{ohm} ohm at ({x_mm}, {y_mm}) mm, from ground to patch"));
+    }
+    rows
 }
 
 /// A preset in words.

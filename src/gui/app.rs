@@ -1,5 +1,6 @@
 //! The window: collects replies, draws the panels, carries out what they ask for.
 
+use super::bodies_dialog::BodiesDialog;
 use super::command::{Command, Facts};
 use super::compare_session::CompareSession;
 use super::dialogs::{About, Dialog, Next};
@@ -31,6 +32,8 @@ use egui::{Rect, Ui, ViewportCommand};
 use std::path::{Path, PathBuf};
 
 const STATE_KEY: &str = "window";
+/// Said of a command that nothing carries out: a fault of the program that a test looks for.
+pub(super) const UNKNOWN: &str = "Nothing carries out this command";
 
 /// The window's application.
 #[derive(Debug)]
@@ -119,6 +122,7 @@ impl App {
             shows_results: self.state.solve.shows_results,
             has_pattern: self.solve.runs().iter().any(|run| !run.result.patterns.is_empty()),
             shows_pattern: self.state.solve.shows_pattern,
+            has_bodies: project.bodies.is_some(),
             compensates: project.settings.compensation != CompensationMode::None,
             orthographic: self.state.camera.projection == Projection::Orthographic,
             is_painted: self.state.heat != Heat::None,
@@ -225,6 +229,10 @@ impl App {
                 let dialog = OutlineDialog::new(self.session.project(), &self.folder());
                 self.dialog = Dialog::Outline(Box::new(dialog));
             }
+            Command::ImportBodies => {
+                let dialog = BodiesDialog::new(&self.session.project().materials, &self.folder());
+                self.dialog = Dialog::Bodies(Box::new(dialog));
+            }
             Command::Export => {
                 let folder = self.folder().join(format!("{}-export", self.session.name()));
                 let finished = self.session.finished();
@@ -269,8 +277,8 @@ impl App {
             Command::Compare => self.compare.start(self.session.project()),
             Command::Palette => self.dialog = Dialog::Palette(Palette::default()),
             Command::Keys => self.dialog = Dialog::Keys,
-            _ if self.run_edit(command) => {}
-            _ => self.run_view(ctx, command),
+            _ if self.run_edit(command) || self.run_view(ctx, command) => {}
+            _ => self.messages.say(Weight::Error, &format!("{UNKNOWN}: \"{}\"", command.text_and_tip().0)),
         }
     }
 

@@ -19,7 +19,7 @@ pub(super) const MENUS: [Menu; 8] = [
         "File",
         &[
             &[C::New, C::Open, C::Save, C::SaveAs, C::ClearRecent],
-            &[C::ImportOutline],
+            &[C::ImportOutline, C::ImportBodies],
             &[C::Export, C::ExportMesh, C::ExportResults],
             &[C::SavePlot, C::SavePicture, C::Report],
             &[C::Quit],

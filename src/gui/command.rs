@@ -16,6 +16,7 @@ pub(super) enum Command {
     SaveAs,
     ClearRecent,
     ImportOutline,
+    ImportBodies,
     Export,
     Quit,
     Undo,
@@ -78,6 +79,8 @@ pub(super) struct Facts {
     pub(super) has_selection: bool,
     pub(super) has_hand_edits: bool,
     pub(super) compensates: bool,
+    /// Whether imported bodies are in the patch's place.
+    pub(super) has_bodies: bool,
     pub(super) has_mesh: bool,
     pub(super) shows_mesh: bool,
     pub(super) is_solving: bool,
@@ -107,6 +110,9 @@ pub(super) struct Facts {
     pub(super) theme: Option<ThemePreference>,
 }
 
+/// Why something cannot be done with imported bodies.
+const TEMPLATE_ONLY: &str = "imported bodies are in the patch's place, and only the patch can";
+
 impl Command {
     /// All commands, in the order of the menus.
     pub(super) const ALL: &'static [Self] = &[
@@ -116,6 +122,7 @@ impl Command {
         Self::SaveAs,
         Self::ClearRecent,
         Self::ImportOutline,
+        Self::ImportBodies,
         Self::Export,
         Self::Quit,
         Self::Undo,
@@ -199,6 +206,9 @@ impl Command {
             Self::SaveAs => ("Save as…", "Save the project under another name"),
             Self::ClearRecent => ("Clear recent files", "Forget which files were used last; the files stay"),
             Self::ImportOutline => ("Import outline…", "Take the patch's outline from a DXF or SVG drawing"),
+            Self::ImportBodies => {
+                ("Import bodies…", "Put closed bodies from STL, OBJ or GLB files in the patch's place")
+            }
             Self::Export => ("Export…", "Write the geometry with its certificate of no gaps"),
             Self::Quit => ("Quit", "Close the window"),
             Self::Undo => ("Undo", "Take back the last step"),
@@ -263,13 +273,7 @@ impl Command {
             Self::Palette => ("Find a command…", "Search all commands by what they are called or do"),
             Self::Keys => ("Keys and mouse", "List what the keys and the mouse do"),
             Self::Welcome => ("Welcome", "Examples and recent files to begin with"),
-            Self::Example(example) => match example {
-                Example::Flat => ("Flat antenna", "The paper's patch antenna as drawn, in a cage"),
-                Example::BentH => ("Bent, H-plane, R = 10 mm", "The width curves around a cylinder along y"),
-                Example::BentE => ("Bent, E-plane, R = 10 mm", "The resonant length curves around a cylinder along x"),
-                Example::Saddle => ("Saddle", "Curved in opposite ways along x and y"),
-                Example::Twist => ("Twist", "A half wave across the patch that turns along it"),
-            },
+            Self::Example(example) => example_text(example),
         }
     }
 
@@ -282,6 +286,9 @@ impl Command {
             Self::SelectNone => (facts.has_selection, "no vertex is selected"),
             Self::ResetSelected if facts.has_hand_edits => (facts.has_selection, "no vertex is selected"),
             Self::ResetSelected | Self::ResetAll => (facts.has_hand_edits, "no vertex was moved by hand"),
+            Self::Compensate | Self::Compare if facts.has_bodies => (false, TEMPLATE_ONLY),
+            Self::Mesh | Self::Solve if facts.has_bodies => (false, TEMPLATE_ONLY),
+            Self::ImportOutline => (!facts.has_bodies, TEMPLATE_ONLY),
             Self::CompensateNot => (facts.compensates, "there is no compensation"),
             Self::ExportMesh | Self::ShowMesh => (facts.has_mesh, "there is no mesh yet"),
             Self::Solve => (!facts.is_solving, "a run is under way"),
@@ -336,6 +343,17 @@ impl Command {
             Self::Theme(theme) => Some(facts.theme == Some(theme)),
             _ => None,
         }
+    }
+}
+
+/// Text and tooltip of an example.
+fn example_text(example: Example) -> (&'static str, &'static str) {
+    match example {
+        Example::Flat => ("Flat antenna", "The paper's patch antenna as drawn, in a cage"),
+        Example::BentH => ("Bent, H-plane, R = 10 mm", "The width curves around a cylinder along y"),
+        Example::BentE => ("Bent, E-plane, R = 10 mm", "The resonant length curves around a cylinder along x"),
+        Example::Saddle => ("Saddle", "Curved in opposite ways along x and y"),
+        Example::Twist => ("Twist", "A half wave across the patch that turns along it"),
     }
 }
 

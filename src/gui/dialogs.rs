@@ -3,6 +3,7 @@
 //! A path can always be typed. Where the desktop has a session bus its own file dialog is offered too, on a thread of
 //! its own, because it blocks; without a bus that dialog would answer "cancelled" at once.
 
+use super::bodies_dialog::BodiesDialog;
 use super::command::{Command, Facts};
 use super::export_dialog::ExportDialog;
 use super::mesh_export::MeshExport;
@@ -34,6 +35,8 @@ pub(super) enum Purpose {
     Folder,
     /// A drawing to read an outline from.
     Drawing,
+    /// A file to read bodies from.
+    Bodies,
     /// A file to write a mesh or a table to.
     Data,
 }
@@ -80,6 +83,7 @@ pub(super) enum Dialog {
     Path(PathDialog),
     Unsaved(Next),
     Outline(Box<OutlineDialog>),
+    Bodies(Box<BodiesDialog>),
     Export(Box<ExportDialog>),
     MeshExport(Box<MeshExport>),
     ResultExport(Box<ResultExport>),
@@ -152,10 +156,11 @@ impl PathField {
             let dialog = match purpose {
                 Purpose::Folder | Purpose::Data => dialog,
                 Purpose::Drawing => dialog.add_filter("Drawing", &["dxf", "svg", "DXF", "SVG"]),
+                Purpose::Bodies => dialog.add_filter("Bodies", &["stl", "obj", "glb", "STL", "OBJ", "GLB"]),
                 _ => dialog.add_filter("Conformant project", &[ENDING]),
             };
             let chosen = match purpose {
-                Purpose::Open | Purpose::Drawing => dialog.pick_file(),
+                Purpose::Open | Purpose::Drawing | Purpose::Bodies => dialog.pick_file(),
                 Purpose::Save | Purpose::Data => dialog.save_file(),
                 Purpose::Folder => dialog.pick_folder(),
             };
@@ -269,6 +274,7 @@ impl Dialog {
                 Self::Path(dialog) => dialog.ui(ui, out),
                 Self::Unsaved(next) => unsaved(ui, next, about.name, out),
                 Self::Outline(dialog) => dialog.ui(ui, state, out),
+                Self::Bodies(dialog) => dialog.ui(ui, state, out),
                 Self::Export(dialog) => dialog.ui(ui, state),
                 Self::MeshExport(dialog) => dialog.ui(ui, state, out),
                 Self::ResultExport(dialog) => dialog.ui(ui, state, out),

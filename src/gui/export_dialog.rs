@@ -3,10 +3,9 @@
 use super::dialogs::{PathField, Purpose};
 use super::theme::Tokens;
 use super::ui_state::UiState;
-use crate::antenna::flat_complex;
 use crate::geometry::Plc;
 use crate::io::{ExportOptions, export, verify};
-use crate::pipeline::{Deformed, exact_cylinder, summary};
+use crate::pipeline::{Deformed, exact_cylinder, flat, summary};
 use crate::project::Project;
 use crate::task::Task;
 use anyhow::Context as _;
@@ -235,7 +234,7 @@ fn write(
             options.summary = summary(project, deformed);
             deformed.surface()
         }
-        Which::Flat => flat_complex(&project.antenna.to_params()).context("the flat antenna cannot be built")?,
+        Which::Flat => flat(project).context("the flat antenna cannot be built")?,
         Which::Cylinder => exact_cylinder(project, &Task::default())?.context(
             "this project is not bent onto one cylinder: leave one bend preset switched on and no hand edits",
         )?,

@@ -7,7 +7,11 @@ use egui::{DragValue, Grid, Response, RichText, Slider, Ui, Widget};
 use std::ops::RangeInclusive;
 
 /// Width of the labels of a panel, points: the longest one fits.
-const LABEL_WIDTH: f32 = 100.0;
+const LABEL_WIDTH: f32 = 92.0;
+/// Room for the number beside a slider, points: two digits, three decimals and the longest unit.
+const VALUE_WIDTH: f32 = 97.0;
+/// Shortest and longest slider, points.
+const SLIDER_WIDTHS: [f32; 2] = [48.0, 160.0];
 
 /// A number in a panel.
 #[derive(Clone, Debug)]
@@ -61,6 +65,8 @@ impl Number {
     pub(super) fn show(&self, ui: &mut Ui, value: f64) -> (Response, Option<f64>) {
         let label = ui.label(self.label).on_hover_text(self.tip);
         let mut new = value;
+        let rest = ui.available_width() - ui.spacing().item_spacing.x - VALUE_WIDTH;
+        ui.spacing_mut().slider_width = rest.clamp(SLIDER_WIDTHS[0], SLIDER_WIDTHS[1]);
         let response = match &self.slider {
             Some(range) => Slider::new(&mut new, range.clone())
                 .clamping(egui::SliderClamping::Never)

@@ -20,8 +20,8 @@ const SCALES: [f32; 2] = [0.7, 2.0];
 const SCALE_STEP: f32 = 0.1;
 
 impl App {
-    /// Carries out the commands that change what is seen and nothing else.
-    pub(super) fn run_view(&mut self, ctx: &Context, command: Command) {
+    /// Carries out the commands that change what is seen and nothing else; false if it is another one.
+    pub(super) fn run_view(&mut self, ctx: &Context, command: Command) -> bool {
         let state = &mut self.state;
         match command {
             Command::Fit => state.fit = true,
@@ -53,8 +53,9 @@ impl App {
             Command::ZoomReset => set_scale(ctx, state, 1.0),
             Command::NextPanel => self.focus_panel(ctx, true),
             Command::PreviousPanel => self.focus_panel(ctx, false),
-            other => debug_assert!(false, "{other:?} is not carried out"),
+            _ => return false,
         }
+        true
     }
 
     /// Draws everything around the view and the view; returns how far notifications are raised over the status line.

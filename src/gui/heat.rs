@@ -1,7 +1,7 @@
 //! What is painted on the antenna: which quantity, of which part, and how much of the surface has which value.
 
 use super::ui_state::{Heat, HeatPart};
-use crate::antenna::{GROUND, PATCH, SUBSTRATE};
+use crate::antenna::{COAX, GROUND, PATCH, PIN, SUBSTRATE};
 use crate::geometry::Plc;
 use crate::pipeline::Deformed;
 use crate::render::{Array, ColorMap, Vec3};
@@ -62,7 +62,7 @@ impl HeatPart {
     /// Whether a region is painted.
     pub(super) fn paints(self, region: &str) -> bool {
         match self {
-            Self::All => matches!(region, SUBSTRATE | PATCH | GROUND),
+            Self::All => !matches!(region, PIN | COAX),
             Self::Patch => region == PATCH,
             Self::Substrate => region == SUBSTRATE,
             Self::Ground => region == GROUND,
@@ -71,9 +71,9 @@ impl HeatPart {
 
     /// Whether a region decides the range of the scale: of strains on all parts the patch, for it matters most, and the
     /// bend itself strains the ground much more.
-    fn rules(self, heat: Heat, region: &str) -> bool {
+    fn rules(self, heat: Heat, region: &str, has_patch: bool) -> bool {
         let is_strain = matches!(heat, Heat::Area | Heat::MaxStrain | Heat::MinStrain);
-        if self == Self::All && is_strain { region == PATCH } else { self.paints(region) }
+        if self == Self::All && is_strain && has_patch { region == PATCH } else { self.paints(region) }
     }
 }
 
@@ -101,6 +101,7 @@ impl Heated {
     ) -> Option<Self> {
         let values = heat.values(deformed)?;
         let flat: &Plc = &deformed.flat;
+        let has_patch = flat.region(PATCH).is_some();
         let mut facets = Vec::new();
         let mut greatest = 0.0_f32;
         for (region, triangles) in regions.filter(|(region, _)| part.paints(region)) {
@@ -110,7 +111,7 @@ impl Heated {
                     continue;
                 }
                 let own = triangle.map(|v| values[v as usize]);
-                if part.rules(heat, region) {
+                if part.rules(heat, region, has_patch) {
                     greatest = own.iter().filter(|v| v.is_finite()).fold(greatest, |m, v| m.max(v.abs()));
                 }
                 let area = (b - a).cross(c - a).length() / 2.0 * to_mm(1.0).powi(2);
@@ -198,9 +199,10 @@ mod tests {
             let narrow = heated.bins([lo, mean]);
             assert!((narrow.iter().sum::<f64>() - 100.0).abs() < 0.1, "{heat:?}: nothing is lost beyond the ends");
         }
+        let figures = deformed.figures.as_ref().expect("the template's");
         let thin = Heated::new(Heat::Thickness, HeatPart::Patch, &deformed, [(PATCH, &all[..])].into_iter());
         let mean = f64::from(thin.expect("measured").summary()[0]) / 100.0;
-        assert!((mean - deformed.figures.thickness_error).abs() < 0.02, "{mean} beside the figure");
+        assert!((mean - figures.thickness_error).abs() < 0.02, "{mean} beside the figure");
     }
 
     #[test]

@@ -73,9 +73,8 @@ impl Command {
             Self::PreviousPanel => vec![shift(Key::F6)],
             Self::Palette => vec![command_shift(Key::P)],
             Self::Keys => vec![plain(Key::F1)],
-            Self::ResetLayout | Self::ClearRecent | Self::ImportOutline | Self::Welcome | Self::Example(_) => {
-                Vec::new()
-            }
+            Self::ResetLayout | Self::ClearRecent | Self::Welcome | Self::Example(_) => Vec::new(),
+            Self::ImportOutline | Self::ImportBodies => Vec::new(),
             Self::SavePlot | Self::SavePicture | Self::Report | Self::Compare | Self::ShowGhost => Vec::new(),
             Self::ResetAll | Self::CompensateNot | Self::ShowLog | Self::Theme(_) => Vec::new(),
         }

@@ -1,10 +1,8 @@
 //! Export of the mesh as one file for other programs, on a thread of its own.
 
-use super::dialogs::{PathField, Purpose, problem_with};
-use super::export_dialog::{Outcome, answer, busy, show, work};
+use super::file_field::{FileField, Pressed};
 use super::mesh_session::{ShownMesh, grouped};
-use super::outbox::{Action, Outbox};
-use super::status::Weight;
+use super::outbox::Outbox;
 use super::theme::Tokens;
 use super::ui_state::UiState;
 use crate::io::msh::{self, MshVersion};
@@ -13,9 +11,8 @@ use crate::io::vtu::{self, CellField};
 use crate::pipeline::mesh_job::ReadyMesh;
 use crate::units::to_mm;
 use egui::{RichText, Ui};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
-use std::sync::mpsc::Receiver;
 
 /// Form of the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,22 +59,13 @@ impl Format {
     }
 }
 
-#[derive(Debug)]
-enum Phase {
-    Asking,
-    Writing(PathBuf, Receiver<Outcome>),
-    Failed(Outcome),
-}
-
 /// The dialog.
 #[derive(Debug)]
 pub(super) struct MeshExport {
     ready: Arc<ReadyMesh>,
     is_stale: bool,
     format: Format,
-    field: PathField,
-    overwrite: Option<PathBuf>,
-    phase: Phase,
+    file: FileField,
 }
 
 impl MeshExport {
@@ -85,19 +73,12 @@ impl MeshExport {
     pub(super) fn new(mesh: &ShownMesh, is_stale: bool, folder: &Path, name: &str) -> Self {
         let format = Format::Msh4;
         let path = folder.join(name).with_extension(format.ending());
-        Self {
-            ready: Arc::clone(&mesh.ready),
-            is_stale,
-            format,
-            field: PathField::new(Purpose::Data, path.display().to_string()),
-            overwrite: None,
-            phase: Phase::Asking,
-        }
+        Self { ready: Arc::clone(&mesh.ready), is_stale, format, file: FileField::new(&path) }
     }
 
     /// Whether a thread is at work.
     pub(super) fn is_working(&self) -> bool {
-        matches!(self.phase, Phase::Writing(..))
+        self.file.is_working()
     }
 
     /// Draws the dialog; true when it is to be closed.
@@ -111,77 +92,29 @@ impl MeshExport {
             ui.colored_label(Tokens::here(ui).warning, text);
         }
         ui.add_space(6.0);
-        if let Phase::Writing(path, receiver) = &self.phase
-            && let Some(outcome) = answer(receiver)
-        {
-            match outcome {
-                Ok(lines) => {
-                    out.push(Action::Say(Weight::Good, lines.join(" ")));
-                    state.last_folder = path.parent().map(Path::to_owned);
-                    return true;
-                }
-                Err(error) => self.phase = Phase::Failed(Err(error)),
-            }
+        if let Some(closes) = self.file.working(ui, "Writing…", state, out) {
+            return closes;
         }
-        match &self.phase {
-            Phase::Asking => self.ask(ui),
-            Phase::Writing(..) => {
-                busy(ui, "Writing…");
-                false
-            }
-            Phase::Failed(outcome) => {
-                show(ui, outcome);
-                ui.add_space(8.0);
-                let (again, close) =
-                    ui.horizontal(|ui| (ui.button("Try again").clicked(), ui.button("Close").clicked())).inner;
-                if again {
-                    self.phase = Phase::Asking;
-                }
-                close
-            }
-        }
-    }
-
-    fn ask(&mut self, ui: &mut Ui) -> bool {
         ui.label("Format");
         let before = self.format;
         for (format, text, tip) in Format::ALL {
             ui.radio_value(&mut self.format, format, text).on_hover_text(tip);
         }
-        if self.format.ending() != before.ending() && self.field.path().file_name().is_some() {
-            self.field.text = self.field.path().with_extension(self.format.ending()).display().to_string();
+        if self.format.ending() != before.ending() {
+            self.file.rename("", "", self.format.ending());
         }
         ui.add_space(6.0);
-        let mut go = self.field.ui(ui, "Mesh file");
-        let path = self.field.path();
-        let problem = problem_with(&path, true);
-        if let Some(problem) = problem {
-            ui.label(RichText::new(problem).weak());
-        } else if self.overwrite.as_ref() == Some(&path) {
-            ui.colored_label(Tokens::here(ui).warning, "This file exists: press again to replace it.");
-        }
-        ui.add_space(8.0);
-        let mut close = false;
-        ui.horizontal(|ui| {
-            go |= ui.add_enabled(problem.is_none(), egui::Button::new("Export")).clicked();
-            close = ui.button("Cancel").clicked();
-        });
-        if go && problem.is_none() {
-            if path.exists() && self.overwrite.as_ref() != Some(&path) {
-                self.overwrite = Some(path);
-            } else {
-                self.start(ui, path);
+        match self.file.ui(ui, "Export") {
+            Pressed::Nothing => false,
+            Pressed::Cancel => true,
+            Pressed::Go(path) => {
+                let (ready, format) = (Arc::clone(&self.ready), self.format);
+                self.file.write(ui, path, move |path| {
+                    format.write(&ready, path)?;
+                    Ok(vec![format!("Exported the mesh: {}", path.display())])
+                });
+                false
             }
         }
-        close
-    }
-
-    fn start(&mut self, ui: &Ui, path: PathBuf) {
-        let (ready, format, target) = (Arc::clone(&self.ready), self.format, path.clone());
-        let job = move || {
-            format.write(&ready, &target)?;
-            Ok(vec![format!("Exported the mesh: {}", target.display())])
-        };
-        self.phase = Phase::Writing(path, work(ui, job));
     }
 }

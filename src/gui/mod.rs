@@ -19,6 +19,8 @@
 
 mod app;
 mod bars;
+mod bodies_dialog;
+mod body_rows;
 mod command;
 mod command_input;
 mod compare_session;
@@ -29,12 +31,14 @@ mod edit_overlay;
 mod edit_ui;
 mod export_dialog;
 mod field;
+mod file_field;
 mod files;
 mod frame;
 mod guard;
 mod hand_edits;
 mod heat;
 mod keys;
+mod mark_overlay;
 mod mesh_export;
 mod mesh_scene;
 mod mesh_session;
@@ -46,6 +50,7 @@ mod overlay;
 mod paint;
 mod palette;
 mod panel_antenna;
+mod panel_bodies;
 mod panel_cage;
 mod panel_compare;
 mod panel_compensation;
@@ -79,6 +84,8 @@ mod solve_session;
 mod status;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_bodies;
 #[cfg(test)]
 mod tests_edit;
 #[cfg(test)]

@@ -235,8 +235,12 @@ pub(super) fn value_hint(ui: &Ui, view: &View, surface: &Surface, pointer: Pos2,
     }
     let hit = surface_at(view, surface, at).filter(|hit| surface.parts[hit.part].paint == Paint::Heat);
     let Some(value) = hit.and_then(|hit| hit.value) else { return };
+    tag(ui, pointer, format!("{} {}", heat.text(), heat.value_text(value)));
+}
+
+/// A few words beside the pointer.
+pub(super) fn tag(ui: &Ui, pointer: Pos2, text: String) {
     let tokens = Tokens::here(ui);
-    let text = format!("{} {}", heat.text(), heat.value_text(value));
     let galley = ui.painter().layout_no_wrap(text, font(), tokens.text);
     let place = pointer + vec2(14.0, 10.0);
     ui.painter().rect_filled(Rect::from_min_size(place, galley.size()).expand(4.0), 3.0, tokens.panel);

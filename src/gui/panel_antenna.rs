@@ -3,6 +3,7 @@
 use super::command::Command;
 use super::field::{Number, Refused, rows, section};
 use super::outbox::{Action, Outbox};
+use super::panel_bodies;
 use super::panel_materials::{dielectric, metal, own_name, resistors};
 use super::theme::Tokens;
 use super::ui_state::UiState;
@@ -77,6 +78,9 @@ pub(super) fn ui(ui: &mut Ui, project: &Project, state: &mut UiState, out: &mut 
     let antenna = &project.antenna;
     let refused = state.refused.clone();
     let refused = Refused(refused.as_ref());
+    if let Some(bodies) = &project.bodies {
+        return panel_bodies::ui(ui, project, bodies, refused, out);
+    }
     for (title, numbers) in groups() {
         section(ui, title, true, |ui| {
             rows(ui, title, |ui| {

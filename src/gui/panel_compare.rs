@@ -71,7 +71,7 @@ fn table(ui: &mut Ui, compared: &crate::pipeline::compare_job::Compared) {
         for line in &LINES {
             ui.label(line.name).on_hover_text(line.tip);
             for found in compared {
-                let figures = found.as_ref().ok().map(|d| &d.figures);
+                let figures = found.as_ref().ok().and_then(|d| d.figures.as_ref());
                 let text = figures.and_then(line.text).unwrap_or_else(|| "–".to_owned());
                 ui.label(mark(RichText::new(text), figures.and_then(line.error), tokens));
             }

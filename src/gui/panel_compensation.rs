@@ -30,16 +30,24 @@ const MODES: [(CompensationMode, &str, &str); 3] = [
 pub(super) fn ui(ui: &mut Ui, session: &Session, refused: Refused<'_>, out: &mut Outbox) {
     let settings = session.project().settings;
     let mut new = settings;
-    ui.horizontal(|ui| {
-        for (mode, text, tip) in MODES {
-            ui.selectable_value(&mut new.compensation, mode, text).on_hover_text(tip);
-        }
-    });
+    let has_bodies = session.project().bodies.is_some();
+    if has_bodies {
+        let text = "Imported bodies are deformed as drawn: compensation needs the patch's template.";
+        ui.add(egui::Label::new(RichText::new(text).weak()).wrap());
+    } else {
+        ui.horizontal(|ui| {
+            for (mode, text, tip) in MODES {
+                ui.selectable_value(&mut new.compensation, mode, text).on_hover_text(tip);
+            }
+        });
+    }
     rows(ui, "compensation", |ui| {
         if settings.compensation == CompensationMode::Wl {
             scope(ui, &mut new);
         }
-        orders(ui, &mut new);
+        if !has_bodies {
+            orders(ui, &mut new);
+        }
         let tip = "Greatest distance of a straight edge from the smooth surface; at most a third of the thinnest layer";
         let tolerance = Number::new("tolerance", "Split tolerance", "mm", 0.0002).tip(tip);
         tolerance.row(ui, settings.tolerance_mm, refused, out, |v| {

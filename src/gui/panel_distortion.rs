@@ -39,7 +39,14 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, state: &mut UiState) {
             ui.label(RichText::new("Preview").color(tokens.warning).small()).on_hover_text(tip);
         }
     });
-    table(ui, &deformed.figures, deformed.ideal.as_ref());
+    match &deformed.figures {
+        Some(figures) => table(ui, figures, deformed.ideal.as_ref()),
+        None => {
+            let text = "Surface error, width, length and radius are figures of the patch's template; imported bodies have \
+                        none. Area change and strains can be painted on them.";
+            ui.add(egui::Label::new(RichText::new(text).weak()).wrap());
+        }
+    }
 }
 
 /// Tells where a refused shape crosses itself, with a button that goes there.

@@ -1,82 +1,15 @@
-//! Saves a plot as SVG, PNG or CSV; also the field, the checks and the buttons that such dialogs share.
+//! Saves a plot as SVG, PNG or CSV.
 
-use super::dialogs::{PathField, Purpose, problem_with};
+use super::file_field::{FileField, Pressed};
 use super::outbox::{Action, Outbox};
 use super::plots::PlotKind;
 use super::status::Weight;
-use super::theme::Tokens;
 use super::ui_state::UiState;
 use crate::io::write_atomic;
 use crate::plot::{Format, Plot};
 use anyhow::Context as _;
-use egui::{ComboBox, RichText, Ui};
-use std::path::{Path, PathBuf};
-
-/// What the user pressed below a path.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum Pressed {
-    Nothing,
-    Cancel,
-    /// Write this file: it is not there yet, or may be replaced.
-    Go(PathBuf),
-}
-
-/// The path of one file to write, with its checks: asks a second time before it replaces a file.
-#[derive(Debug)]
-pub(super) struct FileField {
-    field: PathField,
-    overwrite: Option<PathBuf>,
-    /// Why the last attempt failed.
-    pub(super) failed: Option<String>,
-}
-
-impl FileField {
-    /// Suggests a path.
-    pub(super) fn new(path: &Path) -> Self {
-        let field = PathField::new(Purpose::Data, path.display().to_string());
-        Self { field, overwrite: None, failed: None }
-    }
-
-    /// Changes the file's name before its ending, unless the user gave it one of their own; and its ending.
-    pub(super) fn rename(&mut self, from: &str, to: &str, ending: &str) {
-        let path = self.field.path();
-        let Some(stem) = path.file_stem().map(|s| s.to_string_lossy().into_owned()) else { return };
-        let stem = stem.strip_suffix(from).map_or(stem.clone(), |own| format!("{own}{to}"));
-        self.field.text = path.with_file_name(format!("{stem}.{ending}")).display().to_string();
-    }
-
-    /// Draws field, warnings and buttons.
-    pub(super) fn ui(&mut self, ui: &mut Ui, action: &str) -> Pressed {
-        let mut go = self.field.ui(ui, "File");
-        let path = self.field.path();
-        let problem = problem_with(&path, true);
-        let tokens = Tokens::here(ui);
-        if let Some(problem) = problem {
-            ui.label(RichText::new(problem).weak());
-        } else if self.overwrite.as_ref() == Some(&path) {
-            ui.colored_label(tokens.warning, "This file exists: press again to replace it.");
-        }
-        if let Some(failed) = &self.failed {
-            ui.add(egui::Label::new(RichText::new(failed).color(tokens.error)).wrap());
-        }
-        ui.add_space(8.0);
-        let mut close = false;
-        ui.horizontal(|ui| {
-            go |= ui.add_enabled(problem.is_none(), egui::Button::new(action)).clicked();
-            close = ui.button("Cancel").clicked();
-        });
-        if close {
-            Pressed::Cancel
-        } else if !go || problem.is_some() {
-            Pressed::Nothing
-        } else if path.exists() && self.overwrite.as_ref() != Some(&path) {
-            self.overwrite = Some(path);
-            Pressed::Nothing
-        } else {
-            Pressed::Go(path)
-        }
-    }
-}
+use egui::{ComboBox, Ui};
+use std::path::Path;
 
 /// The dialog.
 #[derive(Debug)]

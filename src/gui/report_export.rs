@@ -2,20 +2,16 @@
 
 use super::app::App;
 use super::dialogs::Dialog;
-use super::export_dialog::{Outcome, answer, busy, work};
+use super::file_field::{FileField, Pressed};
 use super::mesh_session::{ShownMesh, density_text, shape_text};
-use super::outbox::{Action, Outbox};
-use super::plot_export::{FileField, Pressed};
+use super::outbox::Outbox;
 use super::solve_session::FinishedRun;
-use super::status::Weight;
 use super::ui_state::UiState;
 use crate::io::{ExportOptions, certify, write_atomic};
 use crate::pipeline::{Deformed, summary};
 use crate::project::Project;
 use crate::report::{self, Contents, Image, MeshContents, RunContents};
 use egui::{RichText, Ui};
-use std::path::{Path, PathBuf};
-use std::sync::mpsc::Receiver;
 
 /// What the report will be of.
 #[derive(Clone, Debug)]
@@ -32,7 +28,6 @@ struct Subject {
 pub(super) struct ReportExport {
     subject: Subject,
     file: FileField,
-    writing: Option<(PathBuf, Receiver<Outcome>)>,
 }
 
 impl App {
@@ -52,31 +47,22 @@ impl App {
             runs: self.solve.shown().cloned().collect(),
         };
         let file = FileField::new(&self.folder().join(format!("{}-report.html", subject.name)));
-        self.dialog = Dialog::Report(Box::new(ReportExport { subject, file, writing: None }));
+        self.dialog = Dialog::Report(Box::new(ReportExport { subject, file }));
     }
 }
 
 impl ReportExport {
     /// Whether a thread is at work.
     pub(super) fn is_working(&self) -> bool {
-        self.writing.is_some()
+        self.file.is_working()
     }
 
     /// Draws the dialog; true when it is to be closed.
     pub(super) fn ui(&mut self, ui: &mut Ui, state: &mut UiState, out: &mut Outbox) -> bool {
         ui.heading("Save report");
         ui.add_space(6.0);
-        if let Some((path, receiver)) = &self.writing {
-            match answer(receiver) {
-                None => busy(ui, "Writing…"),
-                Some(Ok(lines)) => {
-                    out.push(Action::Say(Weight::Good, lines.join(" ")));
-                    state.last_folder = path.parent().map(Path::to_owned);
-                    return true;
-                }
-                Some(Err(error)) => (self.file.failed, self.writing) = (Some(error), None),
-            }
-            return false;
+        if let Some(closes) = self.file.working(ui, "Writing…", state, out) {
+            return closes;
         }
         let text = "One page for any browser and for print: dimensions, certificate, distortion, compensation, and the \
                     mesh and the runs on show. What is missing or out of date is marked.";
@@ -90,12 +76,11 @@ impl ReportExport {
             Pressed::Nothing => false,
             Pressed::Cancel => true,
             Pressed::Go(path) => {
-                let (subject, target) = (self.subject.clone(), path.clone());
-                let job = move || {
-                    write_atomic(&target, subject.html()?.as_bytes())?;
-                    Ok(vec![format!("Saved the report: {}", target.display())])
-                };
-                self.writing = Some((path, work(ui, job)));
+                let subject = self.subject.clone();
+                self.file.write(ui, path, move |path| {
+                    write_atomic(path, subject.html()?.as_bytes())?;
+                    Ok(vec![format!("Saved the report: {}", path.display())])
+                });
                 false
             }
         }

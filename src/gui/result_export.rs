@@ -1,7 +1,7 @@
 //! Export of a run's curves as one file for other programs.
 
+use super::file_field::{FileField, Pressed};
 use super::outbox::{Action, Outbox};
-use super::plot_export::{FileField, Pressed};
 use super::solve_session::{FinishedRun, SolveSession};
 use super::status::Weight;
 use super::ui_state::UiState;

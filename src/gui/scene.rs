@@ -7,9 +7,10 @@ use super::heat::{self, Heated, OnShow};
 use super::session::Pose;
 use super::theme::Tokens;
 use super::ui_state::{Heat, HeatPart, UiState};
-use crate::antenna::{COAX, GROUND, PATCH, PIN, SUBSTRATE, flat_complex};
-use crate::geometry::{DVec3, Plc, RegionId, VertexId};
-use crate::project::AntennaSpec;
+use crate::antenna::{COAX, GROUND, PATCH, PIN, SUBSTRATE};
+use crate::geometry::{DVec3, Plc, Region, RegionId, RegionRole, VertexId};
+use crate::pipeline;
+use crate::project::Project;
 use crate::render::scene::{crease_edges, unique_edges};
 use crate::render::{
     Array, Gizmo, GizmoPart, Grid, HandleState, Handles, Lines, Paint, Part, Rgba, Scalars, Scene, Surface, Vec3,
@@ -28,7 +29,7 @@ pub(super) struct SceneBuilder {
     /// Triangles of each region and outlines, of the complex at this address.
     shape: Option<(Arc<Plc>, Shape)>,
     /// The flat antenna, shown until the first answer.
-    drawn: Option<(AntennaSpec, Arc<Plc>)>,
+    drawn: Option<(Project, Arc<Plc>)>,
     /// By the answer's number and the complex's address.
     positions: Option<((u64, usize), Array<Vec3>)>,
     heat: Option<((u64, Heat, HeatPart), Heated)>,
@@ -39,7 +40,7 @@ pub(super) struct SceneBuilder {
 
 #[derive(Clone, Debug)]
 struct Shape {
-    parts: Vec<(String, Array<[u32; 3]>)>,
+    parts: Vec<(Region, Array<[u32; 3]>)>,
     creases: Array<[u32; 2]>,
     /// Those of substrate and patch.
     carried_creases: Array<[u32; 2]>,
@@ -74,8 +75,8 @@ pub(super) fn rgba(color: Color32) -> Rgba {
 pub(super) struct Subject<'a> {
     /// The computed antenna.
     pub(super) on_show: Option<OnShow<'a>>,
-    /// The antenna as drawn, for as long as nothing is computed.
-    pub(super) drawn: &'a AntennaSpec,
+    /// Whose antenna is drawn for as long as nothing is computed.
+    pub(super) drawn: &'a Project,
     pub(super) pose: Option<&'a Pose>,
     /// Whether the cage's vertices can be taken hold of.
     pub(super) is_fixed: bool,
@@ -124,7 +125,7 @@ impl SceneBuilder {
         let key = (shown.serial, state.heat, state.heat_part);
         if self.heat.as_ref().is_none_or(|(k, _)| *k != key) {
             let shape = self.shape(&shown.deformed.flat);
-            let regions = shape.parts.iter().map(|(name, triangles)| (name.as_str(), &triangles[..]));
+            let regions = shape.parts.iter().map(|(region, triangles)| (region.name.as_str(), &triangles[..]));
             let heated = Heated::new(state.heat, state.heat_part, shown.deformed, regions)?;
             self.heat = Some((key, heated));
         }
@@ -144,7 +145,7 @@ impl SceneBuilder {
         let color = rgba(tokens.ideal);
         // Over painted parts its outlines alone are drawn: a veil would falsify the colours.
         let is_veil = state.heat == Heat::None;
-        let parts = shape.parts.iter().filter(|(name, _)| is_veil && matches!(name.as_str(), SUBSTRATE | PATCH));
+        let parts = shape.parts.iter().filter(|(r, _)| is_veil && matches!(r.name.as_str(), SUBSTRATE | PATCH));
         let parts = parts
             .map(|(_, triangles)| Part { opacity: GHOST_OPACITY, ..Part::new(triangles.clone(), Paint::Matt(color)) });
         let surface = Surface { positions: positions.clone(), parts: parts.collect(), scalars: None };
@@ -168,10 +169,11 @@ impl SceneBuilder {
         let shape = self.shape(&flat);
         let scalars = shown.and_then(|shown| self.scalars(shown, state));
         let see_through = state.sees_through;
-        let parts = shape.parts.iter().map(|(name, triangles)| {
-            let paint =
-                if scalars.is_some() && state.heat_part.paints(name) { Paint::Heat } else { paint_of(name, tokens) };
-            let opacity = if see_through && name == SUBSTRATE { 0.35 } else { 1.0 };
+        let parts = shape.parts.iter().map(|(region, triangles)| {
+            let is_painted = scalars.is_some() && state.heat_part.paints(&region.name);
+            let paint = if is_painted { Paint::Heat } else { paint_of(region, tokens) };
+            let is_substrate = region.role == RegionRole::Dielectric && region.name != COAX;
+            let opacity = if see_through && is_substrate { 0.35 } else { 1.0 };
             Part { opacity, ..Part::new(triangles.clone(), paint) }
         });
         let surface = Surface { positions: positions.clone(), parts: parts.collect(), scalars };
@@ -180,10 +182,10 @@ impl SceneBuilder {
         Some((surface, creases))
     }
 
-    fn drawn_flat(&mut self, antenna: &AntennaSpec) -> Option<Arc<Plc>> {
-        if self.drawn.as_ref().is_none_or(|(spec, _)| spec != antenna) {
-            let plc = flat_complex(&antenna.to_params()).ok()?;
-            self.drawn = Some((antenna.clone(), Arc::new(plc)));
+    fn drawn_flat(&mut self, project: &Project) -> Option<Arc<Plc>> {
+        let is_same = |known: &Project| known.antenna == project.antenna && known.bodies == project.bodies;
+        if !self.drawn.as_ref().is_some_and(|(known, _)| is_same(known)) {
+            self.drawn = Some((project.clone(), Arc::new(pipeline::flat(project).ok()?)));
         }
         self.drawn.as_ref().map(|(_, plc)| Arc::clone(plc))
     }
@@ -264,12 +266,12 @@ pub(super) fn gizmo(handles: &[Vec3], state: &UiState, tokens: &Tokens, hot: Hot
 }
 
 /// The material look of a region.
-fn paint_of(name: &str, tokens: &Tokens) -> Paint {
-    match name {
-        PATCH => Paint::Metal(rgba(tokens.patch)),
-        GROUND => Paint::Metal(rgba(tokens.ground)),
-        PIN => Paint::Metal(rgba(tokens.pin)),
-        COAX => Paint::Matt(rgba(tokens.coax)),
+fn paint_of(region: &Region, tokens: &Tokens) -> Paint {
+    match (region.role, region.name.as_str()) {
+        (RegionRole::Conductor, GROUND) => Paint::Metal(rgba(tokens.ground)),
+        (RegionRole::Conductor, PIN) => Paint::Metal(rgba(tokens.pin)),
+        (RegionRole::Conductor, _) => Paint::Metal(rgba(tokens.patch)),
+        (_, COAX) => Paint::Matt(rgba(tokens.coax)),
         _ => Paint::Matt(rgba(tokens.substrate)),
     }
 }
@@ -277,8 +279,9 @@ fn paint_of(name: &str, tokens: &Tokens) -> Paint {
 impl Shape {
     /// Sorts the facets by the region that is seen, and finds the outlines.
     fn of(flat: &Plc) -> Self {
-        let solids: Vec<(RegionId, String)> = flat.solids().map(|(id, r)| (id, r.name.clone())).collect();
-        let mut parts: Vec<(String, Vec<[u32; 3]>)> = solids.iter().map(|(_, n)| (n.clone(), Vec::new())).collect();
+        let solids: Vec<(RegionId, &Region)> = flat.solids().collect();
+        let mut parts: Vec<(Region, Vec<[u32; 3]>)> =
+            solids.iter().map(|(_, region)| ((*region).clone(), Vec::new())).collect();
         let rank = |id: RegionId| solids.iter().position(|(s, _)| *s == id);
         let mut all = Vec::with_capacity(flat.facets.len());
         for facet in &flat.facets {
@@ -286,16 +289,16 @@ impl Shape {
             all.push(triangle);
             // Where two solids touch, the metal is the one that is seen through a translucent substrate.
             let sides = [facet.back, facet.front].into_iter().filter_map(rank);
-            if let Some(part) = sides.max_by_key(|&i| precedence(&solids[i].1)) {
+            if let Some(part) = sides.max_by_key(|&i| precedence(solids[i].1)) {
                 parts[part].1.push(triangle);
             }
         }
-        let parts: Vec<(String, Array<[u32; 3]>)> =
-            parts.into_iter().map(|(name, triangles)| (name, Array::new(triangles))).collect();
+        let parts: Vec<(Region, Array<[u32; 3]>)> =
+            parts.into_iter().map(|(region, triangles)| (region, Array::new(triangles))).collect();
         let creases = crease_edges(&to_picture(&flat.vertices), &all, CREASE_DEG);
         let creases = if creases.is_empty() { unique_edges(&all) } else { creases };
         let mut is_carried = vec![false; flat.vertices.len()];
-        let carried = parts.iter().filter(|(name, _)| matches!(name.as_str(), SUBSTRATE | PATCH));
+        let carried = parts.iter().filter(|(r, _)| matches!(r.name.as_str(), SUBSTRATE | PATCH));
         for &v in carried.flat_map(|(_, triangles)| triangles.iter().flatten()) {
             is_carried[v as usize] = true;
         }
@@ -304,12 +307,12 @@ impl Shape {
     }
 }
 
-fn precedence(name: &str) -> u8 {
-    match name {
-        PATCH => 4,
-        PIN => 3,
-        GROUND => 2,
-        COAX => 1,
+fn precedence(region: &Region) -> u8 {
+    match (region.role, region.name.as_str()) {
+        (_, PATCH) => 4,
+        (_, PIN) => 3,
+        (RegionRole::Conductor, _) => 2,
+        (_, COAX) => 1,
         _ => 0,
     }
 }

@@ -348,7 +348,11 @@ impl Session {
     /// Takes over the presets and hand edits of another project with the same cage.
     fn head_for(&mut self, other: &Project) {
         let project = self.history.project();
-        if other.cage != project.cage || other.antenna != project.antenna || other.settings != project.settings {
+        if other.cage != project.cage
+            || other.antenna != project.antenna
+            || other.bodies != project.bodies
+            || other.settings != project.settings
+        {
             return;
         }
         let mut offsets: Vec<(u32, [f64; 3])> = project.hand_edits.keys().map(|&v| (v, [0.0; 3])).collect();
@@ -382,6 +386,7 @@ fn moved_since(shown: &Shown, project: &Project) -> Option<(Arc<Cage>, Vec<DVec3
     let same = then.cage == project.cage
         && then.presets == project.presets
         && then.antenna == project.antenna
+        && then.bodies == project.bodies
         && then.settings == project.settings;
     if !same {
         return None;

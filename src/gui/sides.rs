@@ -12,7 +12,7 @@ use super::{
 use egui::{Panel, Rect, ScrollArea, Ui};
 
 /// Widths of the side panels, points: all inputs fit, and 1280 points leave the view the larger half.
-const WIDTHS: [f32; 2] = [300.0, 316.0];
+const WIDTHS: [f32; 2] = [312.0, 316.0];
 
 impl App {
     /// Draws both, each if it is shown; returns where they are.

@@ -79,6 +79,9 @@ fn resistors_are_added_where_there_is_room_moved_and_removed() {
         settle(&mut window);
         assert_eq!(project(&window).antenna.resistors.len(), count, "added, and accepted");
     }
+    let mark = window.get_by_label("Resistor 2: 50 Ω").rect();
+    assert!(window.get_by_label("3-D view").rect().contains_rect(mark), "marked in the view");
+    window.get_by_label("Feed point");
     let ctx = window.ctx.clone();
     let mut resistors = project(&window).antenna.resistors;
     resistors[1] = ResistorSpec { x_mm: 8.0, ..resistors[1] };

@@ -2,9 +2,8 @@
 
 use super::command::Command;
 use super::mesh_scene::{Look, MeshScene};
-use super::outbox::Action;
 use super::scene::rgba;
-use super::tests::{Window, lay_out, project, settle, wait_for, window};
+use super::tests::{Window, lay_out, project, run, settle, wait_for, window};
 use super::tests_shell::unnamed;
 use super::theme::Tokens;
 use super::ui_state::{MeshPaint, RightTab};
@@ -36,12 +35,6 @@ fn meshed() -> Window {
     window.key_press(Key::M);
     wait(&mut window);
     window
-}
-
-fn run(window: &mut Window, command: Command) {
-    let ctx = window.ctx.clone();
-    window.state_mut().carry_out(&ctx, Action::Run(command));
-    window.step();
 }
 
 #[test]
@@ -120,7 +113,6 @@ fn what_cannot_be_meshed_is_explained_and_the_old_mesh_stays() {
     window.get_by_label_contains("No mesh was made: there is no exact cylinder");
     assert_eq!(window.state().mesh.shown().map(|s| s.serial), Some(before), "the old one is still there");
     run(&mut window, Command::New);
-    lay_out(&mut window);
     window.get_by_label("Discard changes").click();
     window.run_steps(2);
     assert!(window.state().mesh.shown().is_none() && !window.state().state.mesh.shows, "another project has none");
@@ -195,8 +187,8 @@ fn each_format_is_written_whole_with_its_head() {
         let _ = std::fs::remove_file(&path);
         window.state_mut().session.path = Some(folder.path().join("bent.json"));
         run(&mut window, Command::ExportMesh);
-        lay_out(&mut window);
         window.get_by_label("Format");
+        assert_eq!(unnamed(&window), Vec::<String>::new(), "every control of the dialog has a name");
         window.get_by_label(format).click();
         lay_out(&mut window);
         window.get_all_by_label("Export").last().expect("the button of the dialog").click();
@@ -227,14 +219,12 @@ fn the_mesh_can_be_drawn_at_every_size_in_both_themes() {
             settle(&mut window);
             window.state_mut().state.mesh.density = Density::Coarse;
             run(&mut window, Command::Mesh);
-            window.step();
             wait(&mut window);
             for paint in [MeshPaint::Region, MeshPaint::Angle] {
                 window.state_mut().state.mesh.paint = paint;
                 window.run_steps(2);
             }
             run(&mut window, Command::ExportMesh);
-            lay_out(&mut window);
         }
     }
 }

@@ -4,6 +4,7 @@ use super::command::Command;
 use super::outbox::Action;
 use super::recovery::{Pace, Recovery};
 use super::tests::{Window, lay_out, project, window};
+use super::tests_shell::unnamed;
 use crate::project::{Edit, Project, file};
 use egui_kittest::kittest::Queryable;
 use std::path::Path;
@@ -113,6 +114,7 @@ fn discarded_work_is_gone_and_a_saved_window_leaves_nothing() {
     second.state_mut().offer_recovery();
     lay_out(&mut second);
     second.get_by_label("A project that was never saved");
+    assert_eq!(unnamed(&second), Vec::<String>::new(), "every control of the dialog has a name");
     second.get_by_label("Discard").click();
     lay_out(&mut second);
     lay_out(&mut second);
@@ -213,6 +215,7 @@ fn saving_before_quitting_asks_for_the_file_and_then_quits() {
     lift(&mut window, 0.1);
     carry_out(&mut window, Action::Run(Command::Quit));
     window.get_by_label("Unsaved changes");
+    assert_eq!(unnamed(&window), Vec::<String>::new(), "every control of the dialog has a name");
     window.get_all_by_label("Save").last().expect("the button of the dialog").click();
     lay_out(&mut window);
     window.get_by_label("Save project");

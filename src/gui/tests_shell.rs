@@ -1,11 +1,12 @@
 //! Tests of the window's frame: commands by key and palette, names for screen readers, sides and sizes.
 
+use super::app::UNKNOWN;
 use super::command::{Command, Facts};
 use super::dialogs::Dialog;
 use super::outbox::Action;
-use super::tests::{Window, lay_out, settle, window};
+use super::tests::{Window, lay_out, run, settle, window};
 use super::ui_state::{ResultTab, RightTab, Tab};
-use crate::project::Example;
+use crate::project::{Example, PresetSpec};
 use egui::accesskit::{self, Role};
 use egui::{Event, Key, Modifiers, RawInput};
 use egui_kittest::Harness;
@@ -123,8 +124,10 @@ fn every_control_has_a_name_for_screen_readers() {
         window.state_mut().carry_out(&ctx, Action::Run(command));
         look(&mut window, "below the view");
     }
-    for command in [Command::Palette, Command::Keys, Command::Welcome, Command::SaveAs, Command::Open, Command::Export]
-    {
+    let dialogs = [Command::Palette, Command::Keys, Command::Welcome, Command::SaveAs, Command::Open, Command::Export];
+    let saving = [Command::SavePlot, Command::SavePicture, Command::Report, Command::ImportOutline];
+    window.state_mut().state.heat = super::ui_state::Heat::Area;
+    for command in dialogs.into_iter().chain(saving) {
         window.state_mut().dialog = Dialog::None;
         window.state_mut().session.apply(crate::project::Edit::ClearHandEdits).expect("always possible");
         window.state_mut().carry_out(&ctx, Action::Run(command));
@@ -153,6 +156,37 @@ fn every_control_of_the_results_has_a_name() {
         window.state_mut().state.solve.tab = tab;
         lay_out(&mut window);
         assert_eq!(unnamed(&window), Vec::<String>::new(), "{tab:?}");
+    }
+}
+
+#[test]
+fn every_command_is_carried_out() {
+    let mut window = window();
+    for &command in Command::ALL {
+        run(&mut window, command);
+        let said: Vec<&str> = window.state().messages.texts().filter(|text| text.starts_with(UNKNOWN)).collect();
+        assert!(said.is_empty(), "{command:?}: {said:?}");
+        window.state_mut().dialog = Dialog::None;
+        window.state_mut().mesh.cancel();
+        window.state_mut().solve.cancel();
+    }
+}
+
+#[test]
+fn long_numbers_widen_no_panel() {
+    let mut window = window();
+    let left = |window: &Window| window.get_by_label("3-D view").rect().left();
+    let before = left(&window);
+    let ctx = window.ctx.clone();
+    for (_, _, preset) in super::preset_fields::choices() {
+        window.state_mut().carry_out(&ctx, Action::AddPreset(preset));
+    }
+    let twist = PresetSpec::Twist { amplitude_mm: -14.375, rate_deg_per_mm: -2.345 };
+    window.state_mut().carry_out(&ctx, Action::AddPreset(twist));
+    for tab in [Tab::Cage, Tab::Antenna, Tab::History] {
+        window.state_mut().state.tab = tab;
+        lay_out(&mut window);
+        assert!((left(&window) - before).abs() < 0.5, "{tab:?}: {} instead of {before}", left(&window));
     }
 }
 

@@ -6,71 +6,17 @@ use super::app::App;
 use super::command::Command;
 use super::outbox::Action;
 use super::solve_session::request;
-use super::tests::{Window, has_adapter, lay_out, project, settle, window};
+use super::tests::{Window, has_adapter, lay_out, project, run, settle, until, window};
+use super::tests_shell::unnamed;
 use super::ui_state::{Curve, Polarization, ResultTab, RightTab, SolveUi};
-use crate::pipeline::solve_job::RunResult;
-use crate::pipeline::{Density, RunFigures, Shape};
+use crate::pipeline::made_up::made_up;
+use crate::pipeline::{Density, Shape};
 use crate::project::Edit;
-use crate::results::{FarField, FittedResonance, Powers, Sweep, frequencies};
-use crate::units::{ETA0, GHZ};
+use crate::units::GHZ;
 use egui::accesskit::Role;
 use egui::{Key, Theme};
 use egui_kittest::kittest::Queryable;
-use nalgebra::Complex;
-use std::f64::consts::PI;
-use std::time::{Duration, Instant};
-
-/// A resonator at `freq` of the loaded quality 12 with some of its line, and the pattern of a small dipole on a ground.
-fn made_up(freq: f64) -> RunResult {
-    let freqs = frequencies(8.0 * GHZ, 14.0 * GHZ, 10e6);
-    let s11 = freqs.iter().map(|f| {
-        let detuning = Complex::new(0.1, 12.0 * (f / freq - freq / f));
-        detuning / (Complex::from(1.0) + detuning) * Complex::from_polar(1.0, -f / freq)
-    });
-    let sweep = Sweep { s11: s11.collect(), freqs, reference: 50.0 };
-    RunResult {
-        resonance: sweep.resonance(),
-        fitted: Some(FittedResonance { freq: 1.001 * freq, freq_error: 1e6, q: 12.3, q_error: 0.1 }),
-        sweep,
-        figures: RunFigures {
-            port_impedance_ohm: 49.87,
-            tets: 12_345,
-            clipped_cells: 12,
-            dt_s: 1.7e-13,
-            steps: 6789,
-            residual_db: -40.3,
-            is_settled: true,
-            tet_steps_per_second: 5e7,
-            seconds: 4.2,
-        },
-        patterns: vec![lobe(freq).into()],
-    }
-}
-
-/// E along y, more to the front than to the back.
-fn lobe(freq: f64) -> FarField {
-    let n = 24_u32;
-    let theta: Vec<f64> = (0..=n).map(|k| PI * f64::from(k) / f64::from(n)).collect();
-    let phi: Vec<f64> = (0..2 * n).map(|k| PI * f64::from(k) / f64::from(n)).collect();
-    let all = theta.iter().flat_map(|&t| phi.iter().map(move |&p| (t, p)));
-    let size = |t: f64| Complex::new((1.2 + t.cos()) / 2.2, 0.0);
-    let (e_theta, e_phi): (Vec<_>, Vec<_>) = all.map(|(t, p)| (size(t) * p.sin(), size(t) * t.cos() * p.cos())).unzip();
-    let step = PI / f64::from(n);
-    let rows = e_theta.chunks(phi.len()).zip(e_phi.chunks(phi.len())).zip(&theta);
-    let radiated = rows.map(|((a, b), t)| {
-        let sum: f64 = a.iter().zip(b).map(|(a, b)| a.norm_sqr() + b.norm_sqr()).sum();
-        sum * t.sin() * step * step / (2.0 * ETA0)
-    });
-    let radiated: f64 = radiated.sum();
-    let powers = Powers {
-        incident: 1.05 * radiated,
-        accepted: 1.04 * radiated,
-        lost: 0.03 * radiated,
-        crossing: radiated,
-        radiated,
-    };
-    FarField { freq, theta, phi, e_theta, e_phi, powers }
-}
+use std::time::Duration;
 
 /// A window with made-up results of the flat and the bent antenna.
 pub(super) fn solved() -> Window {
@@ -86,23 +32,6 @@ fn add(window: &mut Window, shape: Shape, freq: f64) {
     let chosen = SolveUi { shape, ..SolveUi::default() };
     let request = request(&project(window), &chosen);
     window.state_mut().solve.add(request.job(), made_up(freq));
-}
-
-fn run(window: &mut Window, command: Command) {
-    let ctx = window.ctx.clone();
-    window.state_mut().carry_out(&ctx, Action::Run(command));
-    window.run_steps(2);
-}
-
-/// Steps until something is so; generous, because machines are slow and busy.
-fn until(window: &mut Window, what: &str, is_so: impl Fn(&App) -> bool) {
-    let start = Instant::now();
-    while !is_so(window.state()) {
-        assert!(start.elapsed() < Duration::from_secs(300), "{what} does not happen");
-        std::thread::sleep(Duration::from_millis(5));
-        window.step();
-    }
-    window.run_steps(2);
 }
 
 #[test]
@@ -325,7 +254,7 @@ fn each_result_is_written_to_a_file() {
         let _ = std::fs::remove_file(&path);
         window.state_mut().session.path = Some(folder.path().join("bent.json"));
         run(&mut window, Command::ExportResults);
-        lay_out(&mut window);
+        assert_eq!(unnamed(&window), Vec::<String>::new(), "every control of the dialog has a name");
         window.get_by_label(format).click();
         lay_out(&mut window);
         window.get_all_by_label("Export").last().expect("the button of the dialog").click();
@@ -372,7 +301,6 @@ fn the_results_can_be_drawn_at_every_size_in_both_themes() {
                 window.run_steps(2);
             }
             run(&mut window, Command::ExportResults);
-            lay_out(&mut window);
         }
     }
 }
@@ -415,7 +343,7 @@ fn every_plot_is_saved_in_every_form_from_its_menu() {
     assert!(svg.contains("Reflection, two") && svg.contains("Flat") && svg.contains("R 10 H, raw"), "both runs");
     window.state_mut().state.solve.tab = ResultTab::Pattern;
     run(&mut window, Command::SavePlot);
-    lay_out(&mut window);
+    assert_eq!(unnamed(&window), Vec::<String>::new(), "every control of the dialog has a name");
     window.get_by_label("CSV").click();
     window.run_steps(2);
     window.get_all_by_label("Save").last().expect("the button of the dialog").click();

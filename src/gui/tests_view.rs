@@ -3,31 +3,12 @@
 use super::app::App;
 use super::command::Command;
 use super::heat::OnShow;
-use super::outbox::Action;
-use super::tests::{Window, has_adapter, lay_out, project, settle, window};
+use super::tests::{Window, has_adapter, lay_out, project, run, settle, until, window};
 use super::ui_state::{Heat, HeatPart};
 use crate::pipeline::PipelineError;
 use crate::pipeline::worker::Reply;
 use crate::project::CompensationMode;
 use egui_kittest::kittest::Queryable;
-use std::time::{Duration, Instant};
-
-fn run(window: &mut Window, command: Command) {
-    let ctx = window.ctx.clone();
-    window.state_mut().carry_out(&ctx, Action::Run(command));
-    lay_out(window);
-}
-
-/// Steps until something is so; generous, because machines are slow and busy.
-fn until(window: &mut Window, what: &str, is_so: impl Fn(&App) -> bool) {
-    let start = Instant::now();
-    while !is_so(window.state()) {
-        assert!(start.elapsed() < Duration::from_secs(300), "{what} does not happen");
-        std::thread::sleep(Duration::from_millis(5));
-        window.step();
-    }
-    lay_out(window);
-}
 
 #[test]
 fn every_quantity_is_painted_with_its_histogram_and_a_fixed_range_holds() {
@@ -61,7 +42,7 @@ fn before_and_after_are_compared_and_looked_at_without_changing_the_project() {
     run(&mut window, Command::Compare);
     until(&mut window, "a comparison", |app| app.compare.compared().is_some());
     let strain = |mode| match window.state().compare.on_show(mode) {
-        Some(OnShow { deformed, .. }) => deformed.figures.patch_strain,
+        Some(OnShow { deformed, .. }) => deformed.figures.as_ref().map_or(f64::NAN, |f| f.patch_strain),
         None => f64::NAN,
     };
     let [raw, wl, isometric] = crate::pipeline::compare_job::MODES.map(strain);

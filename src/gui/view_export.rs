@@ -2,18 +2,15 @@
 
 use super::app::App;
 use super::dialogs::Dialog;
-use super::export_dialog::{Outcome, answer, busy, work};
+use super::file_field::{FileField, Pressed};
 use super::heat::Bar;
-use super::outbox::{Action, Outbox};
-use super::plot_export::{FileField, Pressed};
-use super::status::Weight;
+use super::outbox::Outbox;
 use super::ui_state::UiState;
 use crate::io::write_atomic;
 use crate::plot::{ColorScale, Overlay};
 use crate::render::{Gpu, Picture, Scene, View, colormap, picture};
 use egui::{ComboBox, Ui};
-use std::path::{Path, PathBuf};
-use std::sync::mpsc::Receiver;
+use std::path::Path;
 
 /// What is seen: the scene, from where, and the scales beside it.
 #[derive(Clone, Debug)]
@@ -52,7 +49,6 @@ pub(super) struct ViewExport {
     shot: Shot,
     choice: Choice,
     file: FileField,
-    writing: Option<(PathBuf, Receiver<Outcome>)>,
 }
 
 impl App {
@@ -69,29 +65,20 @@ impl ViewExport {
     /// Offers to save a view to a file in `folder` named after the project.
     pub(super) fn new(shot: Shot, folder: &Path, name: &str) -> Self {
         let choice = Choice { scale: 2, ground: Ground::Theme, has_bars: true, has_grid: true };
-        Self { shot, choice, file: FileField::new(&folder.join(format!("{name}-view.png"))), writing: None }
+        Self { shot, choice, file: FileField::new(&folder.join(format!("{name}-view.png"))) }
     }
 
     /// Whether a thread is at work.
     pub(super) fn is_working(&self) -> bool {
-        self.writing.is_some()
+        self.file.is_working()
     }
 
     /// Draws the dialog; true when it is to be closed.
     pub(super) fn ui(&mut self, ui: &mut Ui, state: &mut UiState, out: &mut Outbox) -> bool {
         ui.heading("Save picture of the view");
         ui.add_space(6.0);
-        if let Some((path, receiver)) = &self.writing {
-            match answer(receiver) {
-                None => busy(ui, "Drawing…"),
-                Some(Ok(lines)) => {
-                    out.push(Action::Say(Weight::Good, lines.join(" ")));
-                    state.last_folder = path.parent().map(Path::to_owned);
-                    return true;
-                }
-                Some(Err(error)) => (self.file.failed, self.writing) = (Some(error), None),
-            }
-            return false;
+        if let Some(closes) = self.file.working(ui, "Drawing…", state, out) {
+            return closes;
         }
         self.choices(ui);
         ui.add_space(6.0);
@@ -99,16 +86,15 @@ impl ViewExport {
             Pressed::Nothing => false,
             Pressed::Cancel => true,
             Pressed::Go(path) => {
-                let (shot, choice, target) = (self.shot.clone(), self.choice, path.clone());
-                let job = move || {
+                let (shot, choice) = (self.shot.clone(), self.choice);
+                self.file.write(ui, path, move |path| {
                     let picture = render(&Gpu::headless()?, shot, choice)?;
-                    write_atomic(&target, &picture.png()?)?;
+                    write_atomic(path, &picture.png()?)?;
                     Ok(vec![
                         format!("Saved a picture of {} x {} pixels:", picture.width, picture.height),
-                        target.display().to_string(),
+                        path.display().to_string(),
                     ])
-                };
-                self.writing = Some((path, work(ui, job)));
+                });
                 false
             }
         }

@@ -9,6 +9,7 @@ use super::compare_session::mode_text;
 use super::edit_overlay;
 use super::edit_ui::Outline;
 use super::heat::{Bar, Heated, OnShow, ticks};
+use super::mark_overlay;
 use super::mesh_scene::MeshScene;
 use super::mesh_session::ShownMesh;
 use super::operating::{Operating, Outcome};
@@ -102,7 +103,7 @@ impl Frame<'_> {
     }
 
     fn subject(&self) -> Subject<'_> {
-        let drawn = &self.session.project().antenna;
+        let drawn = self.session.project();
         Subject { on_show: self.on_show, drawn, pose: self.pose, is_fixed: self.preview.is_some() }
     }
 
@@ -414,6 +415,9 @@ impl Viewport {
         if let Some(pose) = frame.pose.filter(|_| state.shows_cage) {
             edit_overlay::mirrors(ui, frame.rect, &view, (pose, frame.handles), state);
         }
+        let marks = frame.on_show.filter(|_| frame.mesh.is_none()).map_or(&[][..], |shown| &shown.deformed.marks);
+        let reads = !self.is_dragging() && self.hot.vertex.is_none() && self.hot.gizmo.is_none();
+        let is_read = mark_overlay::draw(ui, response, &view, marks, reads);
         match &self.drag {
             Drag::Outline(drawn) => {
                 if let Some(to) = response.interact_pointer_pos() {
@@ -431,6 +435,8 @@ impl Viewport {
                 let hovered = self.hot.vertex.filter(|_| pointer.is_some());
                 if let (Some(vertex), Some(pose)) = (hovered, frame.pose) {
                     overlay::vertex_hint(ui, frame.rect, vertex, pose);
+                } else if is_read {
+                    // Its value is all there is to say.
                 } else if let (Some(at), Some(surface), None) = (pointer, scene.surfaces.first(), frame.mesh) {
                     overlay::value_hint(ui, &view, surface, at, frame.local(at), state.heat);
                 }

@@ -2,13 +2,14 @@
 //!
 //! The axes turn from ours (z up) by (x, y, z) -> (x, z, -y). No normals are stored: a viewer then shades each facet
 //! flat, as it is. What a region is made of stands in its material's `extras`. The reader takes triangle lists from
-//! the binary chunk, indexed or not, and refuses what would be read wrongly if passed over: node transforms, sparse
-//! accessors, compression and outside buffers.
+//! the binary chunk, indexed or not, once for each node that shows them, with the node's transforms; it refuses what
+//! would be read wrongly if passed over: sparse accessors, compression and outside buffers.
 
 use super::certificate::Material;
 use super::error::{IoError, ParseError, Place};
 use super::stl::shorten;
-use crate::geometry::{DVec3, Plc, RegionRole, VertexId};
+use crate::geometry::{DQuat, DVec3, Plc, RegionRole, VertexId};
+use glam::{DAffine3, DMat4};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::collections::HashMap;
@@ -20,11 +21,15 @@ const BIN_CHUNK: u32 = 0x004E_4942;
 const FLOAT: u32 = 5126;
 const TRIANGLES: u32 = 4;
 
-/// One mesh of a glTF file, turned back to z up, metres.
+/// One primitive of a mesh of a glTF file as a node shows it, turned back to z up, metres.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
     /// Name of the material, else of the mesh, else empty.
     pub name: String,
+    /// Name of the node, else of the mesh, else empty.
+    pub object: String,
+    /// Which placed mesh it is part of: a mesh of several materials has a part for each.
+    pub number: usize,
     /// What it is made of, where `extras` say so.
     pub material: Option<Material>,
     /// Triangles, counter-clockwise from outside, m.
@@ -122,9 +127,46 @@ struct Root {
     #[serde(default)]
     meshes: Vec<RawMesh>,
     #[serde(default)]
-    nodes: Vec<HashMap<String, Value>>,
+    nodes: Vec<Node>,
     #[serde(default)]
     materials: Vec<RawMaterial>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+struct Node {
+    name: String,
+    mesh: Option<usize>,
+    children: Vec<usize>,
+    /// Column by column.
+    matrix: Option<[f64; 16]>,
+    translation: Option<[f64; 3]>,
+    rotation: Option<[f64; 4]>,
+    scale: Option<[f64; 3]>,
+}
+
+impl Node {
+    /// Its transform within its parent; `None` where it has none.
+    fn transform(&self) -> Option<DAffine3> {
+        if let Some(columns) = &self.matrix {
+            return Some(DAffine3::from_mat4(DMat4::from_cols_array(columns)));
+        }
+        let Self { translation, rotation, scale, .. } = self;
+        (translation.is_some() || rotation.is_some() || scale.is_some()).then(|| {
+            DAffine3::from_scale_rotation_translation(
+                DVec3::from_array(scale.unwrap_or([1.0; 3])),
+                DQuat::from_array(rotation.unwrap_or([0.0, 0.0, 0.0, 1.0])),
+                DVec3::from_array(translation.unwrap_or_default()),
+            )
+        })
+    }
+}
+
+/// A mesh where a node shows it.
+struct Placed<'a> {
+    mesh: usize,
+    name: &'a str,
+    world: Option<DAffine3>,
 }
 
 #[derive(Deserialize)]
@@ -171,7 +213,7 @@ struct RawMaterial {
     extras: Option<Value>,
 }
 
-/// Reads the triangles of a binary glTF file, one [`Mesh`] per primitive.
+/// Reads the triangles of a binary glTF file, one [`Mesh`] per primitive and node that shows it.
 ///
 /// # Errors
 /// [`ParseError`] for a broken container, any reference out of bounds, numbers that are not finite, and what is not
@@ -182,29 +224,38 @@ pub fn parse(bytes: &[u8]) -> Result<Vec<Mesh>, ParseError> {
     if let Some(name) = root.extensions_required.first() {
         return Err(ParseError::new(Place::File, format!("needs the extension {}, which is not read", shorten(name))));
     }
-    for (i, node) in root.nodes.iter().enumerate() {
-        if ["matrix", "translation", "rotation", "scale"].iter().any(|key| node.contains_key(*key)) {
-            let what = "the node has a transform, which is not read: apply it to the vertices before";
-            return Err(ParseError::new(Place::Element("nodes", i), what));
-        }
-    }
     let mut meshes = Vec::new();
     // Views may overlap, so a short file could ask for much: each byte of it is good for one index at most.
     let mut left = bin.len();
-    for (m, mesh) in root.meshes.iter().enumerate() {
+    for (number, placed) in root.placed()?.into_iter().enumerate() {
+        let mesh = get(&root.meshes, "meshes", placed.mesh)?;
         for primitive in &mesh.primitives {
-            let triangles = root.triangles(primitive, Place::Element("meshes", m), bin, &mut left)?;
+            let mut triangles = root.triangles(primitive, Place::Element("meshes", placed.mesh), bin, &mut left)?;
+            if let Some(world) = placed.world {
+                triangles.iter_mut().flatten().for_each(|p| *p = to_ours(world.transform_point3(to_gltf(*p))));
+            }
             let material = match primitive.material {
                 Some(i) => Some(get(&root.materials, "materials", i)?),
                 None => None,
             };
             let name = material.and_then(|m| m.name.clone()).unwrap_or_else(|| mesh.name.clone());
+            let object = if placed.name.is_empty() { &mesh.name } else { placed.name }.to_owned();
             let extras = material.and_then(|m| m.extras.clone());
             let extras = extras.and_then(|e| serde_json::from_value::<Extras>(e).ok()).filter(|e| e.unit == "m");
-            meshes.push(Mesh { name, material: extras.map(|e| e.material), triangles });
+            meshes.push(Mesh { name, object, number, material: extras.map(|e| e.material), triangles });
         }
     }
     Ok(meshes)
+}
+
+/// From z up to glTF's y up.
+fn to_gltf(p: DVec3) -> DVec3 {
+    DVec3::new(p.x, p.z, -p.y)
+}
+
+/// From glTF's y up to z up; zero is always positive zero.
+fn to_ours(p: DVec3) -> DVec3 {
+    DVec3::new(p.x, 0.0 - p.z, p.y) + DVec3::ZERO
 }
 
 fn chunks(bytes: &[u8]) -> Result<(&[u8], &[u8]), ParseError> {
@@ -259,6 +310,43 @@ impl<'a> Elements<'a> {
 }
 
 impl Root {
+    /// All meshes where nodes show them, in the order of the nodes; all meshes as they stand where no node shows any.
+    fn placed(&self) -> Result<Vec<Placed<'_>>, ParseError> {
+        let mut parent = vec![None; self.nodes.len()];
+        for (n, node) in self.nodes.iter().enumerate() {
+            for &child in &node.children {
+                get(&self.nodes, "nodes", child)?;
+                if parent[child].replace(n).is_some() {
+                    return Err(ParseError::new(Place::Element("nodes", child), "the node has two parents"));
+                }
+            }
+        }
+        let mut placed = Vec::new();
+        for (n, node) in self.nodes.iter().enumerate() {
+            let Some(mesh) = node.mesh else { continue };
+            let mut world: Option<DAffine3> = None;
+            let mut at = Some(n);
+            for _ in 0..=self.nodes.len() {
+                let Some(k) = at else { break };
+                if let Some(own) = self.nodes[k].transform() {
+                    world = Some(world.map_or(own, |world| own * world));
+                }
+                at = parent[k];
+            }
+            if at.is_some() {
+                return Err(ParseError::new(Place::Element("nodes", n), "the node is a descendant of itself"));
+            }
+            if world.is_some_and(|w| !w.is_finite()) {
+                return Err(ParseError::new(Place::Element("nodes", n), "the node's transform is not finite"));
+            }
+            placed.push(Placed { mesh, name: &node.name, world });
+        }
+        if placed.is_empty() {
+            placed = (0..self.meshes.len()).map(|mesh| Placed { mesh, name: "", world: None }).collect();
+        }
+        Ok(placed)
+    }
+
     fn elements<'a>(&self, index: usize, kind: &str, size: usize, bin: &'a [u8]) -> Result<Elements<'a>, ParseError> {
         let fault = |what: &str| ParseError::new(Place::Element("accessors", index), what);
         let accessor = get(&self.accessors, "accessors", index)?;
@@ -325,7 +413,7 @@ impl Root {
                 index(k).and_then(|i| positions.get(i)).ok_or_else(|| fault("an index is out of range"))?;
             let (words, _) = bytes.as_chunks::<4>();
             let [x, y, z] = [words[0], words[1], words[2]].map(|w| f64::from(f32::from_le_bytes(w)));
-            let point = DVec3::new(x, 0.0 - z, y) + DVec3::ZERO;
+            let point = to_ours(DVec3::new(x, y, z));
             if point.is_finite() { Ok(point) } else { Err(fault("a position is not a finite number")) }
         };
         (0..count / 3).map(|t| Ok([corner(3 * t)?, corner(3 * t + 1)?, corner(3 * t + 2)?])).collect()

@@ -16,15 +16,16 @@
 //! shared facet by facet, no T-junction, no gap, no crossing; [`verify()`] proves it anew. Every file is written whole
 //! or not at all ([`write_atomic`]).
 //!
-//! A flat outline for a patch enters as DXF or SVG ([`outline`]).
+//! A flat outline for a patch enters as DXF or SVG ([`outline`]), closed bodies of any program as STL, OBJ or glTF
+//! ([`bodies`]).
 //!
 //! A field run under way is kept as a [`checkpoint`].
 //!
 //! Files are millimetres except glTF (metres, as its standard demands). Readers refuse rather than guess, say the
-//! place, and take memory in proportion to the file's length only. Closed solids of other programs are not imported:
-//! their formats have no materials.
+//! place, and take memory in proportion to the file's length only.
 
 mod atomic;
+pub mod bodies;
 mod certificate;
 pub mod checkpoint;
 pub mod csv;

@@ -32,6 +32,8 @@ pub struct Obj {
 pub struct Group {
     /// The name; empty before the first `g` or `o`.
     pub name: String,
+    /// Name of the material that its first face has by `usemtl`; empty where there is none.
+    pub material: String,
     /// Corners by index into [`Obj::vertices`].
     pub faces: Vec<[VertexId; 3]>,
 }
@@ -86,7 +88,7 @@ fn parse_scaled(bytes: &[u8], digits: i32) -> Result<Obj, ParseError> {
     let text = String::from_utf8_lossy(bytes);
     let mut obj = Obj::default();
     let mut numbers: HashMap<String, usize> = HashMap::new();
-    let mut name = String::new();
+    let (mut name, mut material) = (String::new(), String::new());
     for (i, line) in text.lines().enumerate() {
         let place = Place::Line(i + 1);
         obj.materials
@@ -96,6 +98,7 @@ fn parse_scaled(bytes: &[u8], digits: i32) -> Result<Obj, ParseError> {
         match words.next() {
             Some("v") => obj.vertices.push(vertex(words, digits, place)?),
             Some("g" | "o") => name = words.collect::<Vec<_>>().join(" "),
+            Some("usemtl") => material = words.collect::<Vec<_>>().join(" "),
             Some("f") => {
                 let corners: Vec<VertexId> =
                     words.map(|word| corner(word, obj.vertices.len(), place)).collect::<Result<_, _>>()?;
@@ -103,7 +106,7 @@ fn parse_scaled(bytes: &[u8], digits: i32) -> Result<Obj, ParseError> {
                     return Err(ParseError::new(place, format!("a face of {} corners, not 3 or more", corners.len())));
                 }
                 let group = *numbers.entry(name.clone()).or_insert_with(|| {
-                    obj.groups.push(Group { name: name.clone(), faces: Vec::new() });
+                    obj.groups.push(Group { name: name.clone(), material: material.clone(), faces: Vec::new() });
                     obj.groups.len() - 1
                 });
                 let fan = corners[1..].windows(2).map(|pair| [corners[0], pair[0], pair[1]]);
@@ -148,8 +151,8 @@ mod tests {
     fn indices_of_every_form_and_polygons_are_read() {
         let text = "v 0 0 0\nv 1 0 0 1.0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nusemtl x\ng top side\nf 1 2/1 3/1/1 4//1\no b\nf -4 -3 -2\n";
         let obj = parse(text.as_bytes()).unwrap();
-        let faces: Vec<_> = obj.groups.iter().map(|g| (g.name.as_str(), g.faces.len())).collect();
-        assert_eq!(faces, [("top side", 2), ("b", 1)], "a quad is two triangles");
+        let faces: Vec<_> = obj.groups.iter().map(|g| (g.name.as_str(), &g.material[..], g.faces.len())).collect();
+        assert_eq!(faces, [("top side", "x", 2), ("b", "x", 1)], "a quad is two triangles");
         assert_eq!(obj.groups[1].faces[0], [0, 1, 2].map(VertexId::new), "counted from the end");
     }
 

@@ -20,6 +20,15 @@ pub struct Triangle {
     pub corners: [[f32; 3]; 3],
 }
 
+/// The triangles under one `solid` name; the name may be empty.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Solid {
+    /// What follows `solid` in text; empty in binary files, whose header is a comment.
+    pub name: String,
+    /// Its triangles.
+    pub triangles: Vec<Triangle>,
+}
+
 /// A corner in double precision, exactly.
 #[must_use]
 pub fn widen(corner: [f32; 3]) -> DVec3 {
@@ -52,15 +61,23 @@ pub(super) fn encode(comment: &str, triangles: &[[[f32; 3]; 3]]) -> Vec<u8> {
     bytes
 }
 
-/// Reads binary or text STL.
+/// Reads binary or text STL; all solids of a text together.
+///
+/// # Errors
+/// As [`parse_solids`].
+pub fn parse(bytes: &[u8]) -> Result<Vec<Triangle>, ParseError> {
+    Ok(parse_solids(bytes)?.into_iter().flat_map(|s| s.triangles).collect())
+}
+
+/// Reads binary or text STL; a text may hold several solids.
 ///
 /// # Errors
 /// [`ParseError`] for anything cut off, overlong, unknown, or not finite.
-pub fn parse(bytes: &[u8]) -> Result<Vec<Triangle>, ParseError> {
+pub fn parse_solids(bytes: &[u8]) -> Result<Vec<Solid>, ParseError> {
     let claimed = bytes.get(80..HEADER).map(|c| u64::from(u32::from_le_bytes([c[0], c[1], c[2], c[3]])));
     let expected = claimed.map(|n| HEADER as u64 + n * RECORD as u64);
     if expected == Some(bytes.len() as u64) {
-        return parse_binary(&bytes[HEADER..]);
+        return Ok(vec![Solid { name: String::new(), triangles: parse_binary(&bytes[HEADER..])? }]);
     }
     if bytes.trim_ascii_start().get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid")) {
         return parse_text(&String::from_utf8_lossy(bytes));
@@ -97,8 +114,8 @@ fn parse_binary(records: &[u8]) -> Result<Vec<Triangle>, ParseError> {
     records.iter().enumerate().map(read).collect()
 }
 
-fn parse_text(text: &str) -> Result<Vec<Triangle>, ParseError> {
-    let mut triangles = Vec::new();
+fn parse_text(text: &str) -> Result<Vec<Solid>, ParseError> {
+    let mut solids: Vec<Solid> = Vec::new();
     let mut facet: Option<([f32; 3], Vec<[f32; 3]>)> = None;
     let mut last = "";
     for (i, line) in text.lines().enumerate() {
@@ -107,7 +124,11 @@ fn parse_text(text: &str) -> Result<Vec<Triangle>, ParseError> {
         let Some(word) = words.next() else { continue };
         last = word;
         match (word.to_ascii_lowercase().as_str(), &mut facet) {
-            ("solid" | "endsolid", None) | ("outer" | "endloop", Some(_)) => {}
+            ("solid", None) => {
+                let name = words.collect::<Vec<_>>().join(" ");
+                solids.push(Solid { name, triangles: Vec::new() });
+            }
+            ("endsolid", None) | ("outer" | "endloop", Some(_)) => {}
             ("facet", None) => {
                 words.next();
                 facet = Some((three_numbers(words, place)?, Vec::with_capacity(3)));
@@ -117,7 +138,8 @@ fn parse_text(text: &str) -> Result<Vec<Triangle>, ParseError> {
                 let &mut [a, b, c] = corners.as_mut_slice() else {
                     return Err(ParseError::new(place, format!("this facet has {} vertices, not 3", corners.len())));
                 };
-                triangles.push(Triangle { normal: *normal, corners: [a, b, c] });
+                let solid = solids.last_mut().expect("a text begins with its first solid");
+                solid.triangles.push(Triangle { normal: *normal, corners: [a, b, c] });
                 facet = None;
             }
             _ => return Err(ParseError::new(place, format!("\"{}\" does not belong here", shorten(word)))),
@@ -126,7 +148,7 @@ fn parse_text(text: &str) -> Result<Vec<Triangle>, ParseError> {
     if facet.is_some() || !last.eq_ignore_ascii_case("endsolid") {
         return Err(ParseError::new(Place::File, "ends before its \"endsolid\": it was cut off"));
     }
-    Ok(triangles)
+    Ok(solids)
 }
 
 fn three_numbers<'a>(mut words: impl Iterator<Item = &'a str>, place: Place) -> Result<[f32; 3], ParseError> {

@@ -83,6 +83,9 @@ pub enum PipelineError {
     /// The field cannot be solved.
     #[error("solver: {0}")]
     Solver(TlmError),
+    /// What works on the patch's template alone was asked of imported bodies.
+    #[error("imported bodies cannot be {0} yet: only the patch's template can; export them for another program")]
+    TemplateOnly(&'static str),
     /// A cylinder was asked for where there is none.
     #[error("there is no exact cylinder: only a single bend without hand edits has one")]
     NoCylinder,

@@ -65,6 +65,9 @@ pub fn estimate(
     settings: &SolveSettings,
     speed: f64,
 ) -> Result<Estimate, PipelineError> {
+    if project.bodies.is_some() {
+        return Err(PipelineError::TemplateOnly("solved"));
+    }
     let [lo, hi] = settings.band;
     let pulse = Pulse::new(lo, hi)?;
     let params = project.antenna.to_params();

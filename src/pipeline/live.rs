@@ -7,8 +7,9 @@
 
 use super::PipelineError;
 use super::fields::{Columns, Fields};
+use super::marks::marks;
 use super::scene::{Scene, same_rest};
-use super::stages::{Deformed, Stages};
+use super::stages::{Deformed, Stages, Template};
 use crate::antenna::{PATCH, SUBSTRATE};
 use crate::deform::{GreenMap, GreenWeights, Pose, PreviewWeights, feed_frame, sweep_line};
 use crate::distortion::{Figures, facet_strain, fitted_size, sample_points};
@@ -25,12 +26,35 @@ pub struct Live {
     stages: Stages,
     /// Weights of the surface's vertices: f32, for the picture only.
     vertices: PreviewWeights,
-    /// Places where the substrate's thickness is measured, and their weights.
+    /// What is measured of an antenna of the template.
+    gauges: Option<Gauges>,
+    posed: Option<(Pose, Vec<[f32; 3]>)>,
+}
+
+/// Places of an antenna of the template where something is measured, and their weights.
+#[derive(Debug)]
+struct Gauges {
+    template: Template,
+    /// Places where the substrate's thickness is measured.
     columns: Columns,
     thickness: PreviewWeights,
-    /// Weights of the figures' samples: the patch's bottom plane, then the substrate's bottom under it.
+    /// The figures' samples: the patch's bottom plane, then the substrate's bottom under it.
     samples: GreenWeights,
-    posed: Option<(Pose, Vec<[f32; 3]>)>,
+}
+
+impl Gauges {
+    fn new(template: Template, stages: &Stages, task: &Task) -> Result<Self, PipelineError> {
+        let half = DVec2::new(template.built.width, template.built.length) / 2.0;
+        let bottom = DVec3::Z * template.built.height;
+        let top = sample_points(half);
+        let warped = |p: DVec3| template.compensated.warp.map(p);
+        let rest: Vec<DVec3> = top.iter().copied().chain(top.iter().map(|p| *p - bottom)).map(warped).collect();
+        let samples = stages.scene.green.weights(&rest, task)?;
+        let columns = Columns::new(&stages.reference, template.params.height);
+        let rest: Vec<DVec3> = columns.points.iter().map(|&p| warped(p)).collect();
+        let thickness = stages.scene.green.weights(&rest, task)?.to_preview();
+        Ok(Self { template, columns, thickness, samples })
+    }
 }
 
 impl Live {
@@ -40,20 +64,8 @@ impl Live {
     /// [`PipelineError::Cancelled`], or what the weights refuse.
     pub fn new(project: Project, stages: Stages, task: &Task) -> Result<Self, PipelineError> {
         let vertices = stages.scene.green.weights(&stages.placement.rest, task)?.to_preview();
-        let half = DVec2::new(stages.built.width, stages.built.length) / 2.0;
-        let bottom = DVec3::Z * stages.built.height;
-        let top = sample_points(half);
-        let rest: Vec<DVec3> = top
-            .iter()
-            .copied()
-            .chain(top.iter().map(|p| *p - bottom))
-            .map(|p| stages.compensated.warp.map(p))
-            .collect();
-        let samples = stages.scene.green.weights(&rest, task)?;
-        let columns = Columns::new(&stages.reference, stages.scene.params.height);
-        let rest: Vec<DVec3> = columns.points.iter().map(|&p| stages.compensated.warp.map(p)).collect();
-        let thickness = stages.scene.green.weights(&rest, task)?.to_preview();
-        Ok(Self { project, stages, vertices, columns, thickness, samples, posed: None })
+        let gauges = stages.template.clone().map(|template| Gauges::new(template, &stages, task)).transpose()?;
+        Ok(Self { project, stages, vertices, gauges, posed: None })
     }
 
     /// True if this preview can show the project: it differs in presets and hand edits only.
@@ -69,27 +81,36 @@ impl Live {
     pub fn preview(&mut self, project: &Project) -> Result<Deformed, PipelineError> {
         let started = Instant::now();
         let scene = Scene::pose_of(project, &self.stages.scene)?;
-        let posed = scene.posed(self.stages.compensated.radius_factor)?;
+        let posed = scene.posed(self.gauges.as_ref().map_or(1.0, |g| g.template.compensated.radius_factor))?;
         crate::cage::check_pose(&scene.cage, &posed)?;
         let pose = Pose::new(&scene.green, &posed)?;
         let moved = self.moved(&pose);
         let mut positions: Vec<DVec3> = moved.iter().map(|p| glam::Vec3::from_array(*p).as_dvec3()).collect();
         self.posed = Some((pose.clone(), moved));
-        let feed = Scene::feed(&self.stages.built);
-        let map = GreenMap::new(Arc::clone(&scene.green), pose.clone());
-        let frame = feed_frame(&map, &self.stages.compensated.warp, &feed)?;
-        sweep_line(&feed, &frame, &self.stages.placement, &mut positions)?;
-        let figures = self.figures(&scene, &self.samples.apply(&pose), &positions, project.settings.fit_orders);
+        let mut figures = None;
+        let (mut thickness, mut placed) = (Vec::new(), Vec::new());
+        if let Some(gauges) = &self.gauges {
+            let Template { built, compensated, .. } = &gauges.template;
+            let feed = Scene::feed(built);
+            let map = GreenMap::new(Arc::clone(&scene.green), pose.clone());
+            let frame = feed_frame(&map, &compensated.warp, &feed)?;
+            sweep_line(&feed, &frame, &self.stages.placement, &mut positions)?;
+            placed = marks(built, &self.stages.deformed.flat, &positions);
+            figures = self.figures(&scene, gauges, &pose, &positions, project.settings.fit_orders);
+            let images = gauges.thickness.apply(&pose);
+            let images: Vec<DVec3> = images.into_iter().map(|p| glam::Vec3::from_array(p).as_dvec3()).collect();
+            thickness = gauges.columns.ratios(&images);
+        }
         let mut fields = Fields::new(&self.stages.deformed.flat, &self.stages.reference, &positions);
-        let images: Vec<DVec3> =
-            self.thickness.apply(&pose).into_iter().map(|p| glam::Vec3::from_array(p).as_dvec3()).collect();
-        fields.thickness = self.columns.ratios(&images);
-        if let (Some(cylinder), Some(distance)) = (scene.cylinder(), &figures.cylinder_distance) {
+        fields.thickness = thickness;
+        let distance = figures.as_ref().and_then(|f| f.cylinder_distance);
+        if let (Some(cylinder), Some(distance)) = (scene.cylinder(), distance) {
             fields = fields.with_cylinder(&cylinder, distance.shift, &self.stages.reference);
         }
         Ok(Deformed {
             cage: Arc::clone(&scene.cage),
             posed,
+            marks: placed,
             flat: Arc::clone(&self.stages.deformed.flat),
             positions,
             fields,
@@ -113,10 +134,19 @@ impl Live {
         self.vertices.apply(pose)
     }
 
-    fn figures(&self, scene: &Scene, samples: &[DVec3], positions: &[DVec3], orders: [usize; 2]) -> Figures {
+    fn figures(
+        &self,
+        scene: &Scene,
+        gauges: &Gauges,
+        pose: &Pose,
+        positions: &[DVec3],
+        orders: [usize; 2],
+    ) -> Option<Figures> {
         let full = &self.stages.deformed;
-        let params = &scene.params;
+        let measured = full.figures.as_ref()?;
+        let params = &gauges.template.params;
         let flat = &full.flat;
+        let samples = gauges.samples.apply(pose);
         let (top, bottom) = samples.split_at(samples.len() / 2);
         let size = fitted_size(top, orders);
         let thickness = top.iter().zip(bottom).map(|(t, b)| t.distance(*b)).sum::<f64>() / top.len() as f64;
@@ -127,9 +157,9 @@ impl Live {
         let [patch_strain, substrate_strain] = self.strains(positions);
         let cylinder = scene.cylinder();
         let half = DVec2::new(params.width, params.length) / 2.0;
-        Figures {
-            rho_patch: rho(PATCH, full.figures.rho_patch),
-            rho_substrate: rho(SUBSTRATE, full.figures.rho_substrate),
+        Some(Figures {
+            rho_patch: rho(PATCH, measured.rho_patch),
+            rho_substrate: rho(SUBSTRATE, measured.rho_substrate),
             width: size.x,
             length: size.y,
             width_error: size.x / params.width - 1.0,
@@ -141,7 +171,7 @@ impl Live {
             substrate_strain: substrate_strain[0],
             radius: cylinder.map(|c| c.fitted_radius(top)),
             cylinder_distance: cylinder.map(|c| c.distance(&sample_points(half), top)),
-        }
+        })
     }
 
     /// Largest and root-mean-square strain of the facets of the patch's bottom and of the substrate's top.

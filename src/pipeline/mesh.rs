@@ -2,7 +2,7 @@
 
 use super::PipelineError;
 use super::scene::Scene;
-use super::stages::{Prepared, prepare};
+use super::stages::{Template, prepare};
 use crate::antenna::PatchParams;
 use crate::deform::{Carry, DeformError, SmoothMap, Warp};
 use crate::geometry::{DVec2, DVec3, VertexId};
@@ -105,10 +105,13 @@ impl Density {
 /// # Errors
 /// [`PipelineError`] naming what to change.
 pub fn mesh(project: &Project, shape: Shape, settings: MeshSettings, task: &Task) -> Result<Meshed, PipelineError> {
+    if project.bodies.is_some() {
+        return Err(PipelineError::TemplateOnly("meshed"));
+    }
     let tolerance = from_mm(project.settings.tolerance_mm);
     match shape {
         Shape::Deformed => {
-            let Prepared { compensated, built, .. } = prepare(project, task)?;
+            let Template { compensated, built, .. } = prepare(project, task)?.template;
             let carry = Carry::new(&compensated.map, &compensated.warp, Scene::feed(&built))?;
             mesh_carried(&built, &carry, settings, tolerance, task)
         }
@@ -119,9 +122,10 @@ pub fn mesh(project: &Project, shape: Shape, settings: MeshSettings, task: &Task
         Shape::Cylinder => {
             let scene = Scene::new(project)?;
             let cylinder = scene.cylinder().ok_or(PipelineError::NoCylinder)?;
-            let identity = Warp::identity(DVec2::new(scene.params.ground_width, scene.params.ground_length) / 2.0);
-            let carry = Carry::new(&cylinder, &identity, Scene::feed(&scene.params))?;
-            mesh_carried(&scene.params, &carry, settings, tolerance, task)
+            let params = project.antenna.to_params();
+            let identity = Warp::identity(DVec2::new(params.ground_width, params.ground_length) / 2.0);
+            let carry = Carry::new(&cylinder, &identity, Scene::feed(&params))?;
+            mesh_carried(&params, &carry, settings, tolerance, task)
         }
     }
 }

@@ -1,4 +1,4 @@
-//! A project's checked values: antenna, cage, pose, and the cylinder aimed at.
+//! A project's checked values: cage, pose, and the cylinder aimed at.
 
 use super::PipelineError;
 use crate::antenna::PatchParams;
@@ -13,8 +13,6 @@ use std::sync::Arc;
 /// What a project describes, checked, before anything is deformed.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// The antenna as drawn.
-    pub params: PatchParams,
     /// The rest cage.
     pub cage: Arc<Cage>,
     /// The rest cage prepared for Green coordinates.
@@ -33,16 +31,18 @@ impl Scene {
     /// # Errors
     /// [`PipelineError`] naming the number to change.
     pub fn new(project: &Project) -> Result<Self, PipelineError> {
-        let params = project.antenna.to_params();
-        params.validate().map_err(crate::antenna::PatchError::from)?;
-        let limit = params.thinnest_layer() / 3.0;
-        let tolerance_mm = project.settings.tolerance_mm;
-        if !(tolerance_mm > 0.0 && from_mm(tolerance_mm) <= limit) {
-            return Err(PipelineError::Tolerance { value_mm: tolerance_mm, limit_mm: to_mm(limit) });
+        if project.bodies.is_none() {
+            let params = project.antenna.to_params();
+            params.validate().map_err(crate::antenna::PatchError::from)?;
+            let limit = params.thinnest_layer() / 3.0;
+            let tolerance_mm = project.settings.tolerance_mm;
+            if !(tolerance_mm > 0.0 && from_mm(tolerance_mm) <= limit) {
+                return Err(PipelineError::Tolerance { value_mm: tolerance_mm, limit_mm: to_mm(limit) });
+            }
         }
-        let cage = Cage::around(params.bounds(), &project.cage.to_params())?;
+        let cage = project.rest_cage()?;
         let green = Arc::new(GreenCage::new(cage.mesh.clone())?);
-        let rest = Self { params, cage: Arc::new(cage), green, presets: Vec::new(), edits: Vec::new(), bend: None };
+        let rest = Self { cage: Arc::new(cage), green, presets: Vec::new(), edits: Vec::new(), bend: None };
         Self::pose_of(project, &rest)
     }
 
@@ -152,5 +152,5 @@ impl Scene {
 
 /// True if the two projects differ in nothing but presets and hand edits: the rest cage and all flat points agree.
 pub(super) fn same_rest(a: &Project, b: &Project) -> bool {
-    a.antenna == b.antenna && a.cage == b.cage && a.settings == b.settings
+    a.antenna == b.antenna && a.bodies == b.bodies && a.cage == b.cage && a.settings == b.settings
 }

@@ -2,18 +2,20 @@
 
 use super::PipelineError;
 use super::fields::{Columns, Fields};
+use super::marks::{Mark, marks};
 use super::scene::Scene;
 use crate::antenna::{PATCH, PatchParams, Resistor, flat_complex};
 use crate::cage::Cage;
 use crate::deform::{
-    Carried, Carry, GreenCage, GreenWeights, Placement, Pose, SmoothMap, SplitSettings, SplitSurface, Warp, split,
+    Carry, DeformError, GreenCage, GreenWeights, Image, Placement, Pose, SmoothMap, SplitSettings, SplitSurface, Warp,
+    split,
 };
 use crate::distortion::{
     Compensated, CompensationError, CompensationStep, Figures, IsometricProblem, Scope, Sheet, WlProblem,
     compensate_isometric, compensate_wl, measure,
 };
 use crate::geometry::{DVec2, DVec3, Plc, RegionId, TriMesh, intersect};
-use crate::project::{CompensationMode, Project, ScopeSpec};
+use crate::project::{BodiesSpec, CompensationMode, Project, ScopeSpec};
 use crate::task::Task;
 use crate::units::{from_mm, to_mm};
 use std::sync::Arc;
@@ -30,10 +32,12 @@ pub struct Deformed {
     pub flat: Arc<Plc>,
     /// Deformed positions of the flat surface's vertices, m.
     pub positions: Vec<DVec3>,
+    /// Where feed and resistors of the template meet the patch.
+    pub marks: Vec<Mark>,
     /// Local distortion.
     pub fields: Fields,
-    /// Distortion figures.
-    pub figures: Figures,
+    /// Distortion figures of the patch's template; none of imported bodies.
+    pub figures: Option<Figures>,
     /// The exact cylinder's own figures, where the antenna is bent onto one.
     pub ideal: Option<Figures>,
     /// Compensation, iteration by iteration; empty where there is none.
@@ -57,16 +61,25 @@ impl Deformed {
 pub struct Stages {
     /// The checked project.
     pub scene: Scene,
-    /// Outcome of the compensation.
-    pub compensated: Compensated,
-    /// The antenna that was built: the one drawn, with the patch scaled where the patch alone is compensated.
-    pub built: PatchParams,
+    /// What an antenna of the template has beyond imported bodies.
+    pub template: Option<Template>,
     /// Rest points of the surface's vertices.
     pub placement: Placement,
     /// Flat places as drawn of the surface's vertices, against which distortion is measured, m.
     pub reference: Vec<DVec3>,
     /// The result.
     pub deformed: Deformed,
+}
+
+/// An antenna of the patch's template.
+#[derive(Clone, Debug)]
+pub struct Template {
+    /// The antenna as drawn.
+    pub params: PatchParams,
+    /// Outcome of the compensation.
+    pub compensated: Compensated,
+    /// The antenna that was built: the one drawn, with the patch scaled where the patch alone is compensated.
+    pub built: PatchParams,
 }
 
 /// Computes the deformed antenna of a project: cage, compensation, splitting, guard and figures.
@@ -83,23 +96,33 @@ pub fn deform(project: &Project, task: &Task) -> Result<Deformed, PipelineError>
 /// As [`deform`].
 pub fn run(project: &Project, task: &Task) -> Result<Stages, PipelineError> {
     let started = Instant::now();
-    let Prepared { scene, compensated, built } = prepare(project, task)?;
+    let mut stages = match &project.bodies {
+        None => run_template(project, task)?,
+        Some(bodies) => run_bodies(project, bodies, task)?,
+    };
+    stages.deformed.seconds = started.elapsed().as_secs_f64();
+    Ok(stages)
+}
+
+fn run_template(project: &Project, task: &Task) -> Result<Stages, PipelineError> {
+    let Prepared { scene, template } = prepare(project, task)?;
+    let Template { params, compensated, built } = &template;
     let posed = compensated.map.pose().vertices().to_vec();
     let sheet = |scale| Sheet { scale, warp: &compensated.warp, map: &compensated.map };
-    let carry = Carry::new(&compensated.map, &compensated.warp, Scene::feed(&built))?;
-    let surface = guarded_split(&built, &carry, project.settings.tolerance_mm, task)?;
+    let carry = Carry::new(&compensated.map, &compensated.warp, Scene::feed(built))?;
+    let surface = guarded_split(&flat_complex(built)?, |p| carry.carry(p), project.settings.tolerance_mm, task)?;
     let positions = surface.positions();
     let placement: Placement = surface.images.iter().copied().collect();
-    let reference = reference(&surface.flat, &placement, &compensated);
+    let reference = reference(&surface.flat, &placement, compensated);
     task.check()?;
     let orders = project.settings.fit_orders;
     let cylinder = scene.cylinder();
     let cylinder = cylinder.as_ref();
     let patch = sheet(compensated.patch_scale);
-    let figures = measure(&scene.params, &patch, &sheet(DVec2::ONE), cylinder, orders)?;
-    let ideal = cylinder.map(|c| measure(&scene.params, c, c, Some(c), orders)).transpose()?;
+    let figures = measure(params, &patch, &sheet(DVec2::ONE), cylinder, orders)?;
+    let ideal = cylinder.map(|c| measure(params, c, c, Some(c), orders)).transpose()?;
     let mut fields = Fields::new(&surface.flat, &reference, &positions);
-    let columns = Columns::new(&reference, scene.params.height);
+    let columns = Columns::new(&reference, params.height);
     fields.thickness = columns.ratios(&sheet(DVec2::ONE).positions(&columns.points)?);
     if let (Some(cylinder), Some(distance)) = (cylinder, &figures.cylinder_distance) {
         fields = fields.with_cylinder(cylinder, distance.shift, &reference);
@@ -108,35 +131,61 @@ pub fn run(project: &Project, task: &Task) -> Result<Stages, PipelineError> {
         cage: Arc::clone(&scene.cage),
         posed,
         fields,
+        marks: marks(built, &surface.flat, &positions),
         flat: Arc::new(surface.flat),
         positions,
-        figures,
+        figures: Some(figures),
         ideal,
         compensation: compensated.steps.clone(),
         is_final: true,
-        seconds: started.elapsed().as_secs_f64(),
+        seconds: 0.0,
     };
-    Ok(Stages { scene, compensated, built, placement, reference, deformed })
+    Ok(Stages { scene, template: Some(template), placement, reference, deformed })
+}
+
+/// Bodies go through the cage as drawn; nothing of them is rigid.
+fn run_bodies(project: &Project, bodies: &BodiesSpec, task: &Task) -> Result<Stages, PipelineError> {
+    let scene = Scene::new(project)?;
+    let posed = scene.checked_pose()?;
+    let map = scene.map(&posed)?;
+    check_folds(&map, bodies.bounds())?;
+    let surface = guarded_split(&bodies.to_plc(), |p| map.positions(p), project.settings.tolerance_mm, task)?;
+    let reference = surface.flat.vertices.clone();
+    let placement = Placement { sweep: vec![0.0; reference.len()], rest: reference.clone() };
+    let deformed = Deformed {
+        cage: Arc::clone(&scene.cage),
+        posed,
+        marks: Vec::new(),
+        fields: Fields::new(&surface.flat, &reference, &surface.images),
+        flat: Arc::new(surface.flat),
+        positions: surface.images,
+        figures: None,
+        ideal: None,
+        compensation: Vec::new(),
+        is_final: true,
+        seconds: 0.0,
+    };
+    Ok(Stages { scene, template: None, placement, reference, deformed })
 }
 
 /// A project's checked and compensated map, before any surface is carried by it.
 #[derive(Clone, Debug)]
 pub(super) struct Prepared {
     pub(super) scene: Scene,
-    pub(super) compensated: Compensated,
-    /// The antenna to be built: the one drawn, with the patch scaled where the patch alone is compensated.
-    pub(super) built: PatchParams,
+    pub(super) template: Template,
 }
 
-/// Checks a project, compensates it, and refuses a map that folds.
+/// Checks a project of the template, compensates it, and refuses a map that folds.
 pub(super) fn prepare(project: &Project, task: &Task) -> Result<Prepared, PipelineError> {
     let scene = Scene::new(project)?;
     scene.checked_pose()?;
-    let compensated = compensate(project, &scene, task)?;
+    let params = project.antenna.to_params();
+    let compensated = compensate(project, &scene, &params, task)?;
     crate::cage::check_pose(&scene.cage, compensated.map.pose().vertices())?;
-    let built = scaled(&scene.params, compensated.patch_scale);
-    check_folds(&Sheet { scale: DVec2::ONE, warp: &compensated.warp, map: &compensated.map }, &scene.params)?;
-    Ok(Prepared { scene, compensated, built })
+    let built = scaled(&params, compensated.patch_scale);
+    let sheet = Sheet { scale: DVec2::ONE, warp: &compensated.warp, map: &compensated.map };
+    check_folds(&sheet, params.bounds())?;
+    Ok(Prepared { scene, template: Template { params, compensated, built } })
 }
 
 /// The flat surface complex of a project, as drawn.
@@ -144,7 +193,10 @@ pub(super) fn prepare(project: &Project, task: &Task) -> Result<Prepared, Pipeli
 /// # Errors
 /// [`PipelineError::Antenna`].
 pub fn flat(project: &Project) -> Result<Plc, PipelineError> {
-    Ok(flat_complex(&project.antenna.to_params())?)
+    match &project.bodies {
+        Some(bodies) => Ok(bodies.to_plc()),
+        None => Ok(flat_complex(&project.antenna.to_params())?),
+    }
 }
 
 /// The exact cylinder's surface complex for a project bent onto one cylinder (`None` for other shapes).
@@ -154,10 +206,16 @@ pub fn flat(project: &Project) -> Result<Plc, PipelineError> {
 pub fn exact_cylinder(project: &Project, task: &Task) -> Result<Option<Plc>, PipelineError> {
     let scene = Scene::new(project)?;
     let Some(cylinder) = scene.cylinder() else { return Ok(None) };
-    let half = DVec2::new(scene.params.ground_width, scene.params.ground_length) / 2.0;
-    let identity = Warp::identity(half);
-    let carry = Carry::new(&cylinder, &identity, Scene::feed(&scene.params))?;
-    let surface = guarded_split(&scene.params, &carry, project.settings.tolerance_mm, task)?;
+    let flat = flat(project)?;
+    let tolerance_mm = project.settings.tolerance_mm;
+    if project.bodies.is_some() {
+        let surface = guarded_split(&flat, |p| cylinder.positions(p), tolerance_mm, task)?;
+        return Ok(Some(surface.flat.with_vertices(surface.images)));
+    }
+    let params = project.antenna.to_params();
+    let identity = Warp::identity(DVec2::new(params.ground_width, params.ground_length) / 2.0);
+    let carry = Carry::new(&cylinder, &identity, Scene::feed(&params))?;
+    let surface = guarded_split(&flat, |p| carry.carry(p), tolerance_mm, task)?;
     Ok(Some(surface.flat.with_vertices(surface.positions())))
 }
 
@@ -181,11 +239,16 @@ pub fn apply_cage(
 }
 
 /// Runs the compensation that the project asks for.
-fn compensate(project: &Project, scene: &Scene, task: &Task) -> Result<Compensated, PipelineError> {
+fn compensate(
+    project: &Project,
+    scene: &Scene,
+    params: &PatchParams,
+    task: &Task,
+) -> Result<Compensated, PipelineError> {
     let settings = &project.settings;
     match settings.compensation {
         CompensationMode::None => {
-            let half = DVec2::new(scene.params.ground_width, scene.params.ground_length) / 2.0;
+            let half = DVec2::new(params.ground_width, params.ground_length) / 2.0;
             let map = scene.map(&scene.posed(1.0)?)?;
             let warp = Warp::identity(half);
             Ok(Compensated { warp, patch_scale: DVec2::ONE, radius_factor: 1.0, map, steps: Vec::new() })
@@ -193,24 +256,20 @@ fn compensate(project: &Project, scene: &Scene, task: &Task) -> Result<Compensat
         CompensationMode::Wl => {
             let map = scene.map(&scene.posed(1.0)?)?;
             let scope = if settings.scope == ScopeSpec::Whole { Scope::Whole } else { Scope::Patch };
-            let problem = WlProblem { params: &scene.params, map: &map, scope, orders: settings.fit_orders };
+            let problem = WlProblem { params, map: &map, scope, orders: settings.fit_orders };
             Ok(compensate_wl(&problem, task)?)
         }
-        CompensationMode::Isometric => Ok(compensate_metric(scene, task)?),
+        CompensationMode::Isometric => Ok(compensate_metric(scene, params, task)?),
     }
 }
 
 /// Isometric compensation. Hand edits are laid onto the bend as calibrated without them, so that the first edit does
 /// not let the bend spring back.
-fn compensate_metric(scene: &Scene, task: &Task) -> Result<Compensated, CompensationError> {
+fn compensate_metric(scene: &Scene, params: &PatchParams, task: &Task) -> Result<Compensated, CompensationError> {
     let solve = |scene: &Scene, factor: f64| {
         let map_at = |f: f64| scene.map_at(factor * f);
-        let problem = IsometricProblem {
-            params: &scene.params,
-            degrees: scene.warp_degrees(),
-            cylinder: scene.cylinder(),
-            map_at: &map_at,
-        };
+        let problem =
+            IsometricProblem { params, degrees: scene.warp_degrees(), cylinder: scene.cylinder(), map_at: &map_at };
         let solved = compensate_isometric(&problem, task)?;
         Ok(Compensated { radius_factor: factor * solved.radius_factor, ..solved })
     };
@@ -238,14 +297,13 @@ fn scaled(params: &PatchParams, scale: DVec2) -> PatchParams {
 const FOLD_SAMPLES: [usize; 3] = [21, 21, 3];
 
 /// Refuses a map that turns a sample of the antenna inside out: needed for a valid surface, not sufficient.
-fn check_folds(sheet: &impl SmoothMap, params: &PatchParams) -> Result<(), PipelineError> {
-    let (lo, hi) = params.bounds();
+fn check_folds(map: &impl SmoothMap, (lo, hi): (DVec3, DVec3)) -> Result<(), PipelineError> {
     let [nx, ny, nz] = FOLD_SAMPLES;
     let at = |i: usize, n: usize| i as f64 / (n - 1) as f64;
     let points: Vec<DVec3> = (0..nx * ny * nz)
         .map(|s| lo + (hi - lo) * DVec3::new(at(s / (ny * nz), nx), at(s / nz % ny, ny), at(s % nz, nz)))
         .collect();
-    for (point, (_, jacobian)) in points.iter().zip(sheet.jacobians(&points)?) {
+    for (point, (_, jacobian)) in points.iter().zip(map.jacobians(&points)?) {
         if jacobian.determinant() <= 0.0 {
             return Err(PipelineError::Folded { x_mm: to_mm(point.x), y_mm: to_mm(point.y) });
         }
@@ -256,18 +314,17 @@ fn check_folds(sheet: &impl SmoothMap, params: &PatchParams) -> Result<(), Pipel
 /// Finer tolerances tried when the split surface crosses itself although the map does not fold.
 const RETRIES: usize = 2;
 
-/// Splits the antenna's surface, and finer where it crosses itself.
-fn guarded_split<M: SmoothMap>(
-    built: &PatchParams,
-    carry: &Carry<'_, M>,
+/// Splits a flat surface, and finer where its image crosses itself.
+fn guarded_split<P: Image>(
+    flat: &Plc,
+    carry: impl Fn(&[DVec3]) -> Result<Vec<P>, DeformError>,
     tolerance_mm: f64,
     task: &Task,
-) -> Result<SplitSurface<Carried>, PipelineError> {
-    let flat = flat_complex(built)?;
+) -> Result<SplitSurface<P>, PipelineError> {
     let mut tolerance = from_mm(tolerance_mm);
     for attempt in 0..=RETRIES {
         let phase = task.phase("splitting edges", 0);
-        let surface = split(flat.clone(), |p| carry.carry(p), SplitSettings::with_tolerance(tolerance), task)?;
+        let surface = split(flat.clone(), &carry, SplitSettings::with_tolerance(tolerance), task)?;
         phase.advance(surface.images.len());
         let faces: Vec<_> = surface.flat.facets.iter().map(|f| f.vertices).collect();
         let crossings = intersect::crossings(&surface.positions(), &faces);
@@ -285,7 +342,7 @@ fn guarded_split<M: SmoothMap>(
 /// Most places that are told of a surface that crosses itself.
 const MAX_PLACES: usize = 100;
 
-fn crossing_error(surface: &SplitSurface<Carried>, crossings: &[intersect::Crossing]) -> PipelineError {
+fn crossing_error<P: Image>(surface: &SplitSurface<P>, crossings: &[intersect::Crossing]) -> PipelineError {
     let first = crossings[0];
     let posed = surface.flat.with_vertices(surface.positions());
     let place = |c: &intersect::Crossing| posed.corners(c.first.index()).iter().sum::<DVec3>() / 3.0;

@@ -92,7 +92,9 @@ fn relevant(project: &Project, shape: Shape) -> Project {
     project.antenna = nameless(project.antenna);
     let defaults = Settings::default();
     match shape {
-        Shape::Flat => project = Project { antenna: project.antenna, ..Project::default() },
+        Shape::Flat => {
+            project = Project { antenna: project.antenna, bodies: project.bodies, ..Project::default() };
+        }
         Shape::Cylinder => {
             project.cage = CageSpec::default();
             project.settings = Settings { tolerance_mm: project.settings.tolerance_mm, ..defaults };

@@ -60,7 +60,8 @@ impl From<&Figures> for FiguresReport {
     }
 }
 
-/// What the certificate of an export says of the geometry's making: presets, hand edits, compensation and figures.
+/// What the certificate of an export says of the geometry's making: presets, hand edits, compensation, and figures where
+/// the antenna is the patch's template.
 ///
 /// # Panics
 /// Never for a checked project: its numbers are finite.
@@ -71,7 +72,7 @@ pub fn summary(project: &Project, deformed: &Deformed) -> serde_json::Map<String
         ("presets", part(serde_json::to_value(&project.presets))),
         ("hand_edits", project.hand_edits.len().into()),
         ("compensation", part(serde_json::to_value(project.settings.compensation))),
-        ("figures", part(serde_json::to_value(FiguresReport::from(&deformed.figures)))),
+        ("figures", part(serde_json::to_value(deformed.figures.as_ref().map(FiguresReport::from)))),
     ]
     .map(|(key, value)| (key.to_owned(), value))
     .into_iter()

@@ -5,10 +5,11 @@
 //! on the cage and is told by [`crate::cage::pose`], so that such a project can still be opened and put right.
 
 use super::materials::DIELECTRICS;
-use super::{AntennaSpec, CageSpec, PresetSpec, Project, Settings};
+use super::{AntennaSpec, BodiesError, BodiesSpec, CageSpec, CompensationMode, PresetSpec, Project, Settings};
 use crate::antenna::ParamError;
 use crate::cage::build::MAX_SEGMENTS;
 use crate::cage::{Cage, CageError};
+use crate::geometry::DVec3;
 
 /// Why a project is refused; names the field and what to change.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -16,6 +17,9 @@ pub enum ProjectError {
     /// The antenna's parameters are wrong or do not fit together.
     #[error("antenna.{0}")]
     Antenna(#[from] ParamError),
+    /// The imported bodies are not valid.
+    #[error("bodies: {0}")]
+    Bodies(#[from] BodiesError),
     /// No cage can be built.
     #[error("cage: {0}")]
     Cage(#[from] CageError),
@@ -107,7 +111,11 @@ impl Project {
             }
         }
         self.settings.validate()?;
-        self.check_materials()
+        self.check_materials()?;
+        let Some(bodies) = &self.bodies else { return Ok(()) };
+        bodies.validate()?;
+        let is_compensated = self.settings.compensation != CompensationMode::None;
+        if is_compensated { Err(BodiesError::Compensated.into()) } else { Ok(()) }
     }
 
     fn check_materials(&self) -> Result<(), ProjectError> {
@@ -135,7 +143,13 @@ impl Project {
     /// # Errors
     /// [`CageError`] if padding or segments are out of range.
     pub fn rest_cage(&self) -> Result<Cage, CageError> {
-        Cage::around(self.antenna.to_params().bounds(), &self.cage.to_params())
+        Cage::around(self.bounds(), &self.cage.to_params())
+    }
+
+    /// The box around the flat antenna, m.
+    #[must_use]
+    pub fn bounds(&self) -> (DVec3, DVec3) {
+        self.bodies.as_ref().map_or_else(|| self.antenna.to_params().bounds(), BodiesSpec::bounds)
     }
 }
 

@@ -4,7 +4,9 @@
 //! An edit carries whole new values (a specification, a preset, offsets), never differences, so that applying it twice
 //! changes nothing more. Not handled here: whether the changed cage can be posed; the pipeline tells.
 
-use super::{AntennaSpec, CageSpec, MaterialSpec, PresetEntry, Project, ProjectError, Settings};
+use super::{
+    AntennaSpec, BodiesSpec, CageSpec, CompensationMode, MaterialSpec, PresetEntry, Project, ProjectError, Settings,
+};
 
 /// One change of a project.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,6 +52,9 @@ pub enum Edit {
     SetSettings(Settings),
     /// Replaces the list of the user's own materials.
     SetMaterials(Vec<MaterialSpec>),
+    /// Puts bodies in place of the antenna's template, or takes them away; bodies are not compensated, and those of
+    /// another shape begin flat.
+    SetBodies(Option<Box<BodiesSpec>>),
     /// Puts another whole project in its place.
     Restore(Box<Project>),
 }
@@ -121,6 +126,18 @@ impl Edit {
             Self::ClearHandEdits => project.hand_edits.clear(),
             Self::SetSettings(settings) => project.settings = settings,
             Self::SetMaterials(materials) => project.materials = materials,
+            Self::SetBodies(bodies) => {
+                let bodies = bodies.map(|b| *b);
+                let shape = |b: &Option<BodiesSpec>| b.as_ref().map(|b| b.shape.clone());
+                if shape(&project.bodies) != shape(&bodies) {
+                    project.hand_edits.clear();
+                    project.presets.clear();
+                }
+                if bodies.is_some() {
+                    project.settings.compensation = CompensationMode::None;
+                }
+                project.bodies = bodies;
+            }
             Self::Restore(other) => *project = *other,
         }
         Ok(())

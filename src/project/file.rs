@@ -1,13 +1,14 @@
 //! The project file: versioned JSON, read with every doubt and written so that no failure costs the old file.
 //!
 //! ```json
-//! {"format": "conformant-project", "version": 2, "project": {"antenna": {…}, …}}
+//! {"format": "conformant-project", "version": 3, "project": {"antenna": {…}, …}}
 //! ```
 //!
 //! Versioning: a reader knows all versions up to [`VERSION`] and refuses newer ones by name. The version goes up when a
 //! field is added, removed or changes its meaning; each older version keeps its reader, which brings the value to the
-//! present form. Version 1 knew no lossy metal, no resistors and no names of materials: it is read as version 2 is,
-//! where what is not said is not there, and materials of the library get their names. Unknown fields are errors, because dropping them on the next save would lose what the user decided.
+//! present form. Version 2 knew no imported bodies, version 1 no lossy metal, no resistors and no names of materials
+//! either: they are read as version 3 is, where what is not said is not there, and materials of the library get their
+//! names in version 1. Unknown fields are errors, because dropping them on the next save would lose what the user decided.
 //! Numbers are written with the fewest digits that give the same bits back. What is read has passed
 //! [`Project::validate`]. Not handled: comments in the file, and two programs saving at the same time (the last wins).
 
@@ -20,11 +21,12 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// The newest version that this program reads, and the one it writes.
-pub const VERSION: u64 = 2;
+pub const VERSION: u64 = 3;
 /// The tag by which a project file is known.
 const FORMAT: &str = "conformant-project";
-/// A project with every vertex of the finest cage moved takes about a megabyte; anything near this limit is no project.
-const MAX_BYTES: u64 = 16 << 20;
+/// A project with every vertex of the finest cage moved takes about a megabyte, the most triangles that can be imported
+/// about forty; anything near this limit is no project.
+const MAX_BYTES: u64 = 128 << 20;
 
 /// Why a project file cannot be read or written.
 #[derive(Debug, thiserror::Error)]
@@ -269,7 +271,7 @@ mod tests {
         let newer = r#"{"format": "conformant-project", "version": 7, "project": {"antenna": "other"}}"#;
         assert_eq!(
             message(newer),
-            "a.json was made by a newer Conformant, version 7; this one reads up to 2: update Conformant to open it"
+            "a.json was made by a newer Conformant, version 7; this one reads up to 3: update Conformant to open it"
         );
         for other in ["{}", "[]", "3", r#"{"format": "else", "version": 1, "project": {}}"#] {
             assert!(message(other).contains("is not a Conformant project"), "{other}");
@@ -286,8 +288,8 @@ mod tests {
     #[test]
     fn a_file_of_version_1_is_read_as_an_antenna_without_losses_in_its_metal() {
         let new = text(&Project::default());
-        let old = new.replacen("\"version\": 2", "\"version\": 1", 1).replace("\"name\": \"RT/duroid 5880\",", "");
-        for unknown in ["metal", "resistors", "materials", "name"] {
+        let old = new.replacen("\"version\": 3", "\"version\": 1", 1).replace("\"name\": \"RT/duroid 5880\",", "");
+        for unknown in ["metal", "resistors", "materials", "name", "bodies"] {
             assert!(!old.contains(unknown), "version 1 had no {unknown}: {old}");
         }
         let project = parse(Path::new("a"), old.as_bytes()).expect("as version 1 wrote it");

@@ -6,6 +6,7 @@
 //! [`mod@file`] its form on disk.
 
 pub mod amount;
+mod bodies;
 pub mod check;
 pub mod edit;
 mod example;
@@ -15,6 +16,7 @@ pub mod materials;
 mod name;
 mod outline;
 
+pub use bodies::{BodiesError, BodiesSpec, BodyKind, BodySpec, LooseBody, Shape, WELD_MM};
 pub use check::ProjectError;
 pub use edit::{Edit, EditError};
 pub use example::Example;
@@ -31,7 +33,7 @@ use std::collections::BTreeMap;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Project {
-    /// The flat antenna.
+    /// The flat antenna by its template, which gives way to bodies of the user's own.
     pub antenna: AntennaSpec,
     /// The rest cage.
     pub cage: CageSpec,
@@ -44,6 +46,9 @@ pub struct Project {
     /// Materials of the user's own, to choose from by name.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub materials: Vec<MaterialSpec>,
+    /// Bodies of the user's own in place of the template.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bodies: Option<BodiesSpec>,
 }
 
 /// Dimensions and materials of the antenna; lengths in millimetres. See [`PatchParams`] for their meaning.

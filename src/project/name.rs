@@ -3,7 +3,7 @@
 //! Told by comparing the projects before and after field by field in the form of the file, so that no edit can forget
 //! its name and a new field has one at once: its path, with spaces and without its unit.
 
-use super::Project;
+use super::{BodiesSpec, Project};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -31,7 +31,13 @@ const NAMES: &[(&str, &str)] = &[
 
 /// Names the difference between two projects.
 pub(super) fn step_name(before: &Project, after: &Project) -> String {
-    let value = |project| serde_json::to_value(project).expect("a project has text keys");
+    if before.bodies != after.bodies {
+        return bodies_name(before.bodies.as_ref(), after.bodies.as_ref());
+    }
+    // The surface of bodies is large, and the same in both.
+    let value = |project: &Project| {
+        serde_json::to_value(Project { bodies: None, ..project.clone() }).expect("a project has text keys")
+    };
     let (mut before_fields, mut after_fields) = (value(before), value(after));
     // Presets and hand edits are lists, and have words of their own.
     for list in ["presets", "hand_edits"] {
@@ -58,6 +64,15 @@ pub(super) fn step_name(before: &Project, after: &Project) -> String {
         let entries = |project: &Project| project.presets.iter().map(value_of).collect::<Vec<Value>>();
         presets_name(&entries(before), &entries(after))
     }
+}
+
+fn bodies_name(before: Option<&BodiesSpec>, after: Option<&BodiesSpec>) -> String {
+    let name = match (before, after) {
+        (_, None) => "Back to the patch template",
+        (Some(before), Some(after)) if before.shape == after.shape => "Materials of bodies",
+        _ => "Import bodies",
+    };
+    name.to_owned()
 }
 
 fn value_of(entry: &super::PresetEntry) -> Value {

@@ -6,7 +6,7 @@ use crate::distortion::{CompensationStep, Figures};
 use crate::pipeline::solve_job::{Pattern, RunResult};
 use crate::plot::charts::{self, Reflection};
 use crate::plot::{PlotError, palette};
-use crate::project::{CompensationMode, Project};
+use crate::project::{BodySpec, CompensationMode, Project};
 use crate::tet::BIN_WIDTH;
 use crate::units::{GHZ, to_mm};
 use serde_json::Value;
@@ -43,8 +43,7 @@ fn compensation_text(mode: CompensationMode) -> &'static str {
 /// What matters most, and what is missing.
 pub(super) fn summary(page: &mut Page, contents: &Contents<'_>) {
     let mut figures = Vec::new();
-    if let Ok(deformed) = &contents.deformed {
-        let f = &deformed.figures;
+    if let Some(f) = contents.deformed.as_ref().ok().and_then(|deformed| deformed.figures.as_ref()) {
         figures.push((percent(f.rho_patch), "surface error \u{3c1} of the patch".to_owned()));
         figures.push((percent(f.length_error), "error of the length L".to_owned()));
         figures.push((format!("{:.2} %", 100.0 * f.patch_strain), "largest strain of the patch".to_owned()));
@@ -109,7 +108,13 @@ fn rows<T: serde::Serialize>(value: &T) -> Vec<(String, String)> {
 /// The flat antenna as drawn.
 pub(super) fn antenna(page: &mut Page, project: &Project) {
     page.section("Flat antenna", None);
-    page.pairs(&rows(&project.antenna));
+    match &project.bodies {
+        Some(spec) => {
+            let row = |body: &BodySpec| (body.name.clone(), body.kind.to_string());
+            page.pairs(&spec.bodies.iter().map(row).collect::<Vec<_>>());
+        }
+        None => page.pairs(&rows(&project.antenna)),
+    }
 }
 
 /// Cage, presets, hand edits and settings.
@@ -198,11 +203,14 @@ const FIGURES: [FigureLine; 14] = [
 pub(super) fn distortion(page: &mut Page, contents: &Contents<'_>) {
     let Ok(deformed) = &contents.deformed else { return page.section("Distortion", Some(Status::Missing)) };
     page.section("Distortion", Some(Status::Current));
+    let Some(figures) = &deformed.figures else {
+        return page.paragraph("The figures are those of the patch's template; imported bodies have none.");
+    };
     let ideal = deformed.ideal.as_ref();
     let rows: Vec<Vec<String>> = FIGURES
         .iter()
         .filter_map(|(name, text)| {
-            let own = text(&deformed.figures)?;
+            let own = text(figures)?;
             let ideal = ideal.map(|f| text(f).unwrap_or_default());
             Some([(*name).to_owned(), own].into_iter().chain(ideal).collect())
         })

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test says what is wrong by panicking")]
 
 mod bench;
+mod import;
 mod solve;
 
 use bench::Bench;
@@ -16,9 +17,20 @@ use std::time::Duration;
 fn help_names_every_command_and_wrong_usage_ends_with_2() {
     let bench = Bench::new();
     let help = bench.ok("--help");
-    for command in
-        ["new", "deform", "compensate", "export", "solve", "compare", "verify", "study", "info", "apply", "report"]
-    {
+    for command in [
+        "new",
+        "import",
+        "deform",
+        "compensate",
+        "export",
+        "solve",
+        "compare",
+        "verify",
+        "study",
+        "info",
+        "apply",
+        "report",
+    ] {
         assert!(help.contains(&format!("\n  {command} ")), "{command} in:\n{help}");
         assert!(bench.ok(&format!("{command} --help")).contains("Usage:"), "{command} --help");
     }

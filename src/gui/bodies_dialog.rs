@@ -1,0 +1,265 @@
+//! Import of closed bodies: files, unit, what each body is made of, and what stands against welding them, with places.
+
+use super::body_rows::body_rows;
+use super::dialogs::{PathField, Purpose, problem_with};
+use super::field::rows;
+use super::outbox::{Action, Outbox};
+use super::theme::Tokens;
+use super::ui_state::UiState;
+use crate::antenna::BodyFault;
+use crate::geometry::DVec3;
+use crate::io::bodies::{Solid, name_plainly, read};
+use crate::io::outline::LENGTH_UNITS;
+use crate::project::{BodiesSpec, BodyKind, BodySpec, Edit, LooseBody, MaterialSpec, WELD_MM};
+use crate::units::to_mm;
+use egui::{ComboBox, DragValue, RichText, ScrollArea, Spinner, Ui};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
+
+/// Range of the weld tolerance, mm.
+const WELD_RANGE_MM: (f64, f64) = (1e-6, 1.0);
+/// Height of the lists of bodies and of problems, points.
+const LIST_HEIGHT: f32 = 170.0;
+
+/// The dialog.
+#[derive(Debug)]
+pub(super) struct BodiesDialog {
+    pub(super) field: PathField,
+    asked: Asked,
+    /// What the user chose each body to be made of, by its name.
+    chosen: BTreeMap<String, BodyKind>,
+    /// Materials of the project's own.
+    own: Vec<MaterialSpec>,
+    /// What was read and welded last.
+    found: Option<(Asked, Found)>,
+    working: Option<(Asked, Receiver<Found>)>,
+}
+
+/// What bodies are read from and how they are welded.
+#[derive(Clone, Debug, PartialEq)]
+struct Asked {
+    files: Vec<PathBuf>,
+    /// Place among the units.
+    unit: usize,
+    weld_mm: f64,
+}
+
+/// What came of it, or why nothing could be read.
+type Found = Result<Welded, String>;
+
+#[derive(Debug)]
+struct Welded {
+    /// The bodies as read, without their surfaces.
+    solids: Vec<Solid>,
+    n_triangles: Vec<usize>,
+    size: DVec3,
+    /// All bodies as metal, for what they are made of does not matter to their shape.
+    spec: Result<BodiesSpec, Vec<BodyFault>>,
+}
+
+impl BodiesDialog {
+    /// Asks for files in a folder.
+    pub(super) fn new(own: &[MaterialSpec], folder: &Path) -> Self {
+        Self {
+            field: PathField::new(Purpose::Bodies, folder.join("").display().to_string()),
+            asked: Asked { files: Vec::new(), unit: 0, weld_mm: WELD_MM },
+            chosen: BTreeMap::new(),
+            own: own.to_vec(),
+            found: None,
+            working: None,
+        }
+    }
+
+    /// Draws the dialog; true when it is to be closed.
+    pub(super) fn ui(&mut self, ui: &mut Ui, state: &mut UiState, out: &mut Outbox) -> bool {
+        ui.heading("Import bodies");
+        let about = "Closed bodies from STL, OBJ or binary glTF files take the patch's place, flat in a new cage. Those \
+                     that touch are welded, so that they share their interface.";
+        ui.add(egui::Label::new(RichText::new(about).weak()).wrap());
+        ui.add_space(6.0);
+        self.file(ui, state);
+        ui.add_space(4.0);
+        rows(ui, "bodies", |ui| self.choices(ui));
+        self.work(ui);
+        let current = self.found.as_ref().is_some_and(|(asked, _)| *asked == self.asked);
+        let mut made = None;
+        if self.asked.files.is_empty() {
+            ui.label(RichText::new("No file yet: a body is a solid, a group or a node of a file.").weak());
+        } else if current {
+            made = self.report(ui);
+        } else {
+            ui.horizontal(|ui| {
+                ui.add(Spinner::new().size(14.0));
+                ui.label(RichText::new("Reading and welding…").weak());
+            });
+        }
+        ui.add_space(8.0);
+        let mut close = false;
+        ui.horizontal(|ui| {
+            let button = ui.add_enabled(made.is_some(), egui::Button::new("Import"));
+            let why = "Every body needs a material, and nothing may stand against welding";
+            let go =
+                button.on_hover_text("Put these bodies in the patch's place").on_disabled_hover_text(why).clicked();
+            close = ui.button("Cancel").clicked();
+            if let (true, Some(spec)) = (go, made) {
+                out.push(Action::Edit("bodies", Edit::SetBodies(Some(Box::new(spec)))));
+                state.fit = true;
+                close = true;
+            }
+        });
+        close
+    }
+
+    /// The path of a file, and the files so far.
+    fn file(&mut self, ui: &mut Ui, state: &mut UiState) {
+        let mut go = self.field.ui(ui, "File");
+        let path = self.field.path();
+        let is_known = self.asked.files.contains(&path);
+        let problem = problem_with(&path, false).or(is_known.then_some("This file is among them."));
+        ui.horizontal(|ui| {
+            let tip = "Read the bodies of this file too; several files are welded together";
+            go |= ui.add_enabled(problem.is_none(), egui::Button::new("Add file")).on_hover_text(tip).clicked();
+            if let Some(problem) = problem {
+                ui.label(RichText::new(problem).weak());
+            }
+        });
+        if go && problem.is_none() {
+            state.last_folder = path.parent().map(Path::to_owned);
+            self.field.text = path.with_file_name("").display().to_string();
+            self.asked.files.push(path);
+        }
+        let mut removed = None;
+        for (k, path) in self.asked.files.iter().enumerate() {
+            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            ui.horizontal(|ui| {
+                if ui.small_button("✖").on_hover_text(format!("Leave {name} out")).clicked() {
+                    removed = Some(k);
+                }
+                ui.label(name).on_hover_text(path.display().to_string());
+            });
+        }
+        removed.map(|k| self.asked.files.remove(k));
+    }
+
+    fn choices(&mut self, ui: &mut Ui) {
+        let tip = "What a number in STL and OBJ files means; glTF is always in metres, with y up";
+        let label = ui.label("Unit").on_hover_text(tip);
+        let combo = ComboBox::from_id_salt("body unit").width(90.0).selected_text(LENGTH_UNITS[self.asked.unit].0);
+        let combo = combo.show_ui(ui, |ui| {
+            for (k, (name, _)) in LENGTH_UNITS.iter().enumerate() {
+                ui.selectable_value(&mut self.asked.unit, k, *name);
+            }
+        });
+        combo.response.labelled_by(label.id).on_hover_text(tip);
+        ui.end_row();
+        let tip =
+            "Distance within which two places become one: above the files' rounding, well below the thinnest part";
+        let label = ui.label("Weld within").on_hover_text(tip);
+        let (lo, hi) = WELD_RANGE_MM;
+        let input = DragValue::new(&mut self.asked.weld_mm).suffix(" mm").speed(1e-4).max_decimals(6).range(lo..=hi);
+        ui.add(input.update_while_editing(false)).labelled_by(label.id).on_hover_text(tip);
+        ui.end_row();
+    }
+
+    /// Starts to read and weld what is asked for, and takes what was found.
+    fn work(&mut self, ui: &Ui) {
+        if let Some((asked, receiver)) = &self.working {
+            let found = match receiver.try_recv() {
+                Ok(found) => found,
+                Err(TryRecvError::Empty) => return,
+                Err(TryRecvError::Disconnected) => Err("the bodies could not be read: try again".to_owned()),
+            };
+            self.found = Some((asked.clone(), found));
+            self.working = None;
+        }
+        let is_done = self.found.as_ref().is_some_and(|(asked, _)| *asked == self.asked);
+        if is_done || self.asked.files.is_empty() {
+            return;
+        }
+        let (sender, receiver) = channel();
+        let (asked, ctx) = (self.asked.clone(), ui.ctx().clone());
+        let job = move || {
+            // The dialog may be gone by now.
+            let _ = sender.send(welded(&asked));
+            ctx.request_repaint();
+        };
+        // Without a thread the sender is dropped, which is told above.
+        let _ = std::thread::Builder::new().name("weld".to_owned()).spawn(job);
+        self.working = Some((self.asked.clone(), receiver));
+    }
+
+    /// The bodies with their materials, or what is wrong with them; what would be imported.
+    fn report(&mut self, ui: &mut Ui) -> Option<BodiesSpec> {
+        let error = Tokens::here(ui).error;
+        let welded = match &self.found.as_ref()?.1 {
+            Ok(welded) => welded,
+            Err(reason) => {
+                ui.add(egui::Label::new(RichText::new(reason).color(error)).wrap());
+                return None;
+            }
+        };
+        let kind = |solid: &Solid| self.chosen.get(&solid.name).cloned().or_else(|| BodyKind::suggested(solid));
+        let kinds: Vec<Option<BodyKind>> = welded.solids.iter().map(kind).collect();
+        let notes: Vec<(String, Option<BodyKind>, String)> = welded
+            .solids
+            .iter()
+            .zip(&welded.n_triangles)
+            .zip(&kinds)
+            .map(|((solid, n), kind)| {
+                let material = if solid.material_name.is_empty() { "none" } else { &solid.material_name };
+                (solid.name.clone(), kind.clone(), format!("{n} triangles; material in the file: {material}"))
+            })
+            .collect();
+        ScrollArea::vertical().id_salt("bodies").max_height(LIST_HEIGHT).show(ui, |ui| {
+            if let Some((k, kind)) = body_rows(ui, &notes, &self.own) {
+                self.chosen.insert(notes[k].0.clone(), kind);
+            }
+        });
+        let [x, y, z] = welded.size.to_array().map(to_mm);
+        ui.label(format!("{} bodies, {x:.3} × {y:.3} × {z:.3} mm in all", welded.solids.len()));
+        match &welded.spec {
+            Ok(spec) => {
+                let shared = spec.to_plc().n_shared_facets();
+                ui.label(RichText::new(format!("All closed; {shared} facets shared")).color(Tokens::here(ui).good));
+                let bodies = welded.solids.iter().zip(kinds);
+                let bodies = bodies.map(|(solid, kind)| Some(BodySpec { name: solid.name.clone(), kind: kind? }));
+                let bodies = bodies.collect::<Option<Vec<_>>>();
+                if bodies.is_none() {
+                    ui.label(RichText::new("Say what each body is made of.").weak());
+                }
+                Some(BodiesSpec { bodies: bodies?, ..spec.clone() })
+            }
+            Err(faults) => {
+                ScrollArea::vertical().id_salt("faults").max_height(LIST_HEIGHT).show(ui, |ui| {
+                    for fault in faults {
+                        ui.add(egui::Label::new(RichText::new(fault.to_string()).color(error)).wrap());
+                    }
+                });
+                None
+            }
+        }
+    }
+}
+
+fn welded(asked: &Asked) -> Found {
+    let unit = LENGTH_UNITS[asked.unit].1;
+    let mut solids = Vec::new();
+    for path in &asked.files {
+        solids.extend(read(path, unit).map_err(|error| error.to_string())?);
+    }
+    name_plainly(&mut solids);
+    let n_triangles = solids.iter().map(|s| s.surface.faces.len()).collect();
+    let (lo, hi) = solids
+        .iter()
+        .flat_map(|s| &s.surface.vertices)
+        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), &p| (lo.min(p), hi.max(p)));
+    let loose: Vec<LooseBody> = solids
+        .iter_mut()
+        .map(|solid| LooseBody {
+            spec: BodySpec { name: solid.name.clone(), kind: BodyKind::Metal },
+            surface: std::mem::take(&mut solid.surface),
+        })
+        .collect();
+    Ok(Welded { solids, n_triangles, size: hi - lo, spec: BodiesSpec::weld(&loose, asked.weld_mm) })
+}

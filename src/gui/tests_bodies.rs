@@ -1,0 +1,92 @@
+//! Tests of the import of bodies: dialog, panel, undo.
+
+use super::command::Command;
+use super::dialogs::Dialog;
+use super::outbox::Action;
+use super::tests::{Window, lay_out, project, settle, window};
+use super::ui_state::Tab;
+use crate::io::{ExportOptions, export};
+use crate::pipeline::flat;
+use crate::project::{BodyKind, Project};
+use egui_kittest::kittest::Queryable;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// A file with an open body: a single triangle.
+const OPEN: &str = "solid lid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 5 0 0\nvertex 0 5 0\nendloop\n\
+                    endfacet\nendsolid\n";
+
+fn open_dialog(window: &mut Window) {
+    window.state_mut().carry_out(&egui::Context::default(), Action::Run(Command::ImportBodies));
+    window.run_steps(2);
+    window.get_by_label("Import bodies");
+}
+
+fn add(window: &mut Window, path: &Path) {
+    let Dialog::Bodies(dialog) = &mut window.state_mut().dialog else { panic!("the dialog is open") };
+    dialog.field.text = path.display().to_string();
+    window.run_steps(2);
+    lay_out(window);
+    window.get_by_label("Add file").click();
+    lay_out(window);
+}
+
+/// Waits until the dialog says something.
+fn wait_for(window: &mut Window, said: &str) {
+    let started = Instant::now();
+    while window.query_by_label_contains(said).is_none() {
+        assert!(started.elapsed() < Duration::from_secs(60), "{said} is said");
+        std::thread::sleep(Duration::from_millis(10));
+        window.run_steps(1);
+    }
+    lay_out(window);
+}
+
+#[test]
+fn bodies_are_imported_shown_and_taken_back_by_one_undo() {
+    let folder = tempfile::tempdir().unwrap();
+    let drawn = flat(&Project::default()).expect("the template");
+    export(&drawn, folder.path(), &ExportOptions::default()).expect("gap-free");
+    let mut window = window();
+    window.state_mut().state.tab = Tab::Antenna;
+    settle(&mut window);
+    let before = project(&window);
+    open_dialog(&mut window);
+    add(&mut window, &folder.path().join("antenna.glb"));
+    wait_for(&mut window, "All closed");
+    window.get_by_label_contains("5 bodies, 20.000 × 20.000 × 4.645 mm");
+    window.get_by_label("Import").click();
+    settle(&mut window);
+    let after = project(&window);
+    let spec = after.bodies.as_ref().expect("bodies");
+    let names: Vec<&str> = spec.bodies.iter().map(|b| b.name.as_str()).collect();
+    assert_eq!(names, ["substrate", "patch", "ground", "pin", "coax"], "as exported");
+    assert_eq!(spec.bodies[1].kind, BodyKind::Metal, "as the file says");
+    assert!(after.presets.is_empty(), "flat at first");
+    let shown = &window.state().session.shown().expect("computed").deformed;
+    assert!(shown.figures.is_none() && shown.flat.region("coax").is_some(), "on show");
+    window.get_by_label_contains("figures of the patch's template");
+    window.get_by_label("Patch template");
+    window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
+    settle(&mut window);
+    assert_eq!(project(&window), before, "one step back");
+}
+
+#[test]
+fn what_is_open_is_said_with_the_place_and_cannot_be_accepted() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("lid.stl");
+    std::fs::write(&path, OPEN).unwrap();
+    let mut window = window();
+    settle(&mut window);
+    let before = project(&window);
+    open_dialog(&mut window);
+    add(&mut window, &path);
+    wait_for(&mut window, "\"lid\" is open at 3 edges, (2.500, 0.000, 0.000)");
+    window.get_by_label("Import").click();
+    window.run_steps(2);
+    window.get_by_label("Import bodies");
+    window.get_by_label("Cancel").click();
+    settle(&mut window);
+    assert_eq!(project(&window), before, "nothing happened");
+}
