@@ -33,6 +33,8 @@ mod slots;
 mod source;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_cavity;
 
 pub use checkpoint::Checkpoint;
 pub use error::TlmError;
