@@ -51,7 +51,10 @@ fn edits_without_end() {
             carry_out(&mut window, Action::End);
         }
         window.step();
-        std::fs::write(Path::new(&dir).join("count"), count.to_string()).expect("writable");
+        // Whole at every moment, as the process is killed at any.
+        let [new, told] = ["count.new", "count"].map(|name| Path::new(&dir).join(name));
+        std::fs::write(&new, count.to_string()).expect("writable");
+        std::fs::rename(new, told).expect("writable");
         std::thread::sleep(Duration::from_millis(20));
     }
 }
