@@ -33,6 +33,7 @@ impl App {
             }
             Command::ShowCage => state.shows_cage = !state.shows_cage,
             Command::ShowGhost => state.shows_ghost = !state.shows_ghost,
+            Command::Paint(heat) => state.paint(heat),
             Command::SeeThrough => state.sees_through = !state.sees_through,
             Command::ShowHistory => {
                 let is_shown = state.tab == Tab::History && state.shows_left;

@@ -422,6 +422,14 @@ impl Default for UiState {
 }
 
 impl UiState {
+    /// Paints a quantity; a fixed range holds as long as the unit does.
+    pub(super) fn paint(&mut self, heat: Heat) {
+        if heat.unit() != self.heat.unit() {
+            self.heat_ends = None;
+        }
+        self.heat = heat;
+    }
+
     /// Ends of the colour bar: the fixed ones where they are a range, else those that follow the values.
     pub(super) fn heat_range(&self, auto: [f32; 2]) -> [f32; 2] {
         self.heat_ends.filter(|[lo, hi]| lo < hi).unwrap_or(auto)
