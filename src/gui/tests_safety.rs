@@ -89,7 +89,7 @@ fn work_of_a_killed_process_is_offered_and_recovered() {
     window.state_mut().offer_recovery();
     lay_out(&mut window);
     window.get_by_label("Unsaved work was found");
-    window.get_by_label("Recover").click();
+    window.key_press(egui::Key::Enter);
     lay_out(&mut window);
     let found = lifted(&project(&window));
     assert!(found > 0 && found <= count + 1, "a state that the process was in: {found} of {count}");
