@@ -30,8 +30,6 @@ pub(super) struct Assembly<'a> {
     pub(super) cells: Vec<([VertexId; 4], usize)>,
     /// Where the cells of each part end, by its number.
     pub(super) ends: [usize; N_PARTS],
-    /// The waves that leave there.
-    pub(super) sphere: Option<OuterSphere>,
     faces: BoundaryFaces,
     loads: Loads,
     /// Vertices at the edges of sheets, where the field is singular; empty without correction.
@@ -173,7 +171,7 @@ pub(super) struct LaneTerms {
 
 impl<'a> Assembly<'a> {
     pub(super) fn new(mesh: &'a TetMesh, settings: &NetworkSettings) -> Result<Self, TlmError> {
-        let NetworkSettings { loads, edge_correction, loss_freq, wave_degrees, .. } = settings;
+        let NetworkSettings { loads, edge_correction, loss_freq, .. } = settings;
         let faces = BoundaryFaces::new(mesh, loads)?;
         let (lo, hi) =
             mesh.vertices.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), &p| (lo.min(p), hi.max(p)));
@@ -191,14 +189,22 @@ impl<'a> Assembly<'a> {
         let cells: Vec<([VertexId; 4], usize)> =
             keyed.into_iter().map(|(_, _, t)| (ascending(mesh.tets[t].vertices), t)).collect();
         let rim = if *edge_correction { sheet_edge::rim(mesh) } else { HashSet::new() };
-        let of_sphere: Vec<[VertexId; 3]> = faces_with(mesh, FaceRole::Outer).collect();
+        Ok(Self { mesh, cells, ends, faces, loads: loads.clone(), rim, loss_freq: *loss_freq })
+    }
+
+    /// The outer boundary with the waves that leave there; `None` if it is no sphere in air, or no waves are wanted.
+    ///
+    /// * `degrees`: of the waves.
+    pub(super) fn outer_sphere(&self, degrees: usize) -> Option<OuterSphere> {
         let is_air = |&(_, tet): &(_, usize)| {
-            let region = mesh.tets[tet].region;
-            (mesh.regions[region.index()].eps_r, loads.mu_r(region)) == (1.0, 1.0)
+            let region = self.mesh.tets[tet].region;
+            (self.mesh.regions[region.index()].eps_r, self.loads.mu_r(region)) == (1.0, 1.0)
         };
-        let sphere = OuterSphere::new(&of_sphere, &mesh.vertices, *wave_degrees);
-        let sphere = sphere.filter(|_| cells[ends[usize::from(AT_PORT)]..].iter().all(is_air));
-        Ok(Self { mesh, cells, ends, sphere, faces, loads: loads.clone(), rim, loss_freq: *loss_freq })
+        if !self.cells[self.ends[usize::from(AT_PORT)]..].iter().all(is_air) {
+            return None;
+        }
+        let faces: Vec<[VertexId; 3]> = faces_with(self.mesh, FaceRole::Outer).collect();
+        OuterSphere::new(&faces, &self.mesh.vertices, degrees)
     }
 
     /// The mode of the port, if there is one.

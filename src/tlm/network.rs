@@ -123,12 +123,12 @@ impl<T: Real> Network<T> {
         let filled = slots.fill(&assembly, x);
         let (starts, places, weights) = slots.connect(&filled.0, &assembly);
         let [first, last] = slots.ends;
-        let outgoing = |sphere: &OuterSphere| {
-            let of_cell = |k| assembly.wave_forms(sphere, k);
+        let outgoing = |sphere: OuterSphere| {
+            let of_cell = |k| assembly.wave_forms(&sphere, k);
             let modes = Modes::new(&filled.0, &slots, last..filled.0.len(), sphere.n_waves(), of_cell);
-            Outgoing::new(sphere, modes, x)
+            Outgoing::new(&sphere, modes, x)
         };
-        let outgoing = assembly.sphere.as_ref().map(outgoing);
+        let outgoing = assembly.outer_sphere(settings.wave_degrees).map(outgoing);
         let line = |mode: &PortMode| LineEnd {
             modes: Modes::new(&filled.0, &slots, first..last, 1, |k| assembly.port_form(k)),
             admittance: mode.admittance,
