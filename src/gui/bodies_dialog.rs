@@ -3,7 +3,7 @@
 use super::body_rows::body_rows;
 use super::dialogs::{PathField, Purpose, problem_with};
 use super::export_dialog::{answer, work};
-use super::field::rows;
+use super::field::{Choices, rows};
 use super::outbox::{Action, Outbox};
 use super::theme::Tokens;
 use super::ui_state::UiState;
@@ -147,7 +147,7 @@ impl BodiesDialog {
         let tip = "What a number in STL and OBJ files means; glTF is always in metres, with y up";
         let label = ui.label("Unit").on_hover_text(tip);
         let combo = ComboBox::from_id_salt("body unit").width(90.0).selected_text(LENGTH_UNITS[self.asked.unit].0);
-        let combo = combo.show_ui(ui, |ui| {
+        let combo = combo.show_list(ui, |ui| {
             for (k, (name, _)) in LENGTH_UNITS.iter().enumerate() {
                 ui.selectable_value(&mut self.asked.unit, k, *name);
             }

@@ -1,7 +1,7 @@
 //! The tetrahedral mesh: what is meshed, how it is looked at, and how good it is.
 
 use super::command::{Command, Facts};
-use super::field::rows;
+use super::field::{Choices, rows};
 use super::mesh_session::{MeshSession, ShownMesh, density_text, grouped, has_cylinder, metal_text, shape_text};
 use super::outbox::{Action, Outbox};
 use super::panel_distortion::ROW_HEIGHT;
@@ -91,7 +91,7 @@ pub(super) fn choice<T: Copy + PartialEq>(
     possible: impl Fn(T) -> Result<(), &'static str>,
 ) {
     let label = ui.label(name).on_hover_text(tip);
-    let combo = ComboBox::from_id_salt(name).width(130.0).selected_text(text(*value).0).show_ui(ui, |ui| {
+    let combo = ComboBox::from_id_salt(name).width(130.0).selected_text(text(*value).0).show_list(ui, |ui| {
         for &one in all {
             let (text, tip) = text(one);
             let button = egui::Button::selectable(*value == one, text);

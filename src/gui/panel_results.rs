@@ -1,7 +1,7 @@
 //! The results: reflection with Smith chart, or patterns, and the figures of all runs on show.
 
 use super::command::{Command, Facts};
-use super::field::symbol_button;
+use super::field::{Choices, symbol_button};
 use super::outbox::{Action, Outbox};
 use super::solve_session::SolveSession;
 use super::theme::Tokens;
@@ -16,7 +16,9 @@ const GAP: f32 = 12.0;
 /// Width from which choices, runs and buttons stand in one line, points.
 const WIDE: f32 = 900.0;
 /// Part of the height for the figures where all lies upon each other.
-const TABLE: f32 = 0.32;
+const TABLE: f32 = 0.26;
+/// Greatest part of the room of both plots for the Smith chart, side by side and upon each other.
+const SMITH: [f32; 2] = [0.45, 0.53];
 
 /// Draws the panel.
 pub(super) fn ui(
@@ -74,7 +76,7 @@ fn places(area: Rect, columns: f32, tab: ResultTab) -> [Rect; 3] {
     let (plots, table) = split(area, table);
     let (along, across) = if is_tall { (plots.height(), plots.width()) } else { (plots.width(), plots.height()) };
     let last = match tab {
-        ResultTab::Reflection => across.min(0.45 * along),
+        ResultTab::Reflection => across.min(SMITH[usize::from(is_tall)] * along),
         ResultTab::Pattern => (along - GAP) / 2.0,
     };
     let (first, second) = split(plots, last);
@@ -85,7 +87,10 @@ fn header(ui: &mut Ui, project: &Project, solve: &SolveSession, facts: &Facts, c
     let is_wide = ui.available_width() > WIDE;
     if is_wide {
         ui.horizontal(|ui| {
-            choices(ui, solve, facts, chosen, out);
+            tabs(ui, chosen);
+            ui.separator();
+            choices(ui, solve, chosen);
+            around(ui, facts, chosen, out);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 close(ui, out);
                 exports(ui, facts, out);
@@ -94,22 +99,27 @@ fn header(ui: &mut Ui, project: &Project, solve: &SolveSession, facts: &Facts, c
             });
         });
     } else {
-        ui.horizontal_wrapped(|ui| {
-            choices(ui, solve, facts, chosen, out);
-            ui.separator();
-            exports(ui, facts, out);
-            close(ui, out);
+        ui.horizontal(|ui| {
+            tabs(ui, chosen);
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| close(ui, out));
         });
+        ui.horizontal_wrapped(|ui| {
+            around(ui, facts, chosen, out);
+            exports(ui, facts, out);
+        });
+        ui.horizontal_wrapped(|ui| choices(ui, solve, chosen));
         legend(ui, project, solve, out);
     }
 }
 
-/// What is shown, and how.
-fn choices(ui: &mut Ui, solve: &SolveSession, facts: &Facts, chosen: &mut SolveUi, out: &mut Outbox) {
+fn tabs(ui: &mut Ui, chosen: &mut SolveUi) {
     let tip = "S11 over frequency and in the Smith chart";
     ui.selectable_value(&mut chosen.tab, ResultTab::Reflection, "Reflection").on_hover_text(tip);
     ui.selectable_value(&mut chosen.tab, ResultTab::Pattern, "Pattern").on_hover_text("The far field");
-    ui.separator();
+}
+
+/// How it is shown.
+fn choices(ui: &mut Ui, solve: &SolveSession, chosen: &mut SolveUi) {
     match chosen.tab {
         ResultTab::Reflection => {
             let tip = "Magnitude of S11 in decibels";
@@ -117,7 +127,14 @@ fn choices(ui: &mut Ui, solve: &SolveSession, facts: &Facts, chosen: &mut SolveU
             let tip = "Phase of S11 in degrees, at the ground's top";
             ui.selectable_value(&mut chosen.curve, Curve::Phase, "Phase").on_hover_text(tip);
         }
-        ResultTab::Pattern => pattern_choices(ui, solve, facts, chosen, out),
+        ResultTab::Pattern => pattern_choices(ui, solve, chosen),
+    }
+}
+
+/// Whether the pattern is drawn around the antenna.
+fn around(ui: &mut Ui, facts: &Facts, chosen: &SolveUi, out: &mut Outbox) {
+    if chosen.tab == ResultTab::Pattern && Command::ShowPattern.tool_button(ui, facts) {
+        out.push(Action::Run(Command::ShowPattern));
     }
 }
 
@@ -150,13 +167,13 @@ fn legend(ui: &mut Ui, project: &Project, solve: &SolveSession, out: &mut Outbox
     });
 }
 
-fn pattern_choices(ui: &mut Ui, solve: &SolveSession, facts: &Facts, chosen: &mut SolveUi, out: &mut Outbox) {
+fn pattern_choices(ui: &mut Ui, solve: &SolveSession, chosen: &mut SolveUi) {
     let freqs = polar::frequencies(solve);
     let freq = polar::frequency(solve, chosen);
     ui.add_enabled_ui(!freqs.is_empty(), |ui| {
         let label = ui.label("At");
         let text = freq.map_or("no frequency".to_owned(), polar::freq_text);
-        let combo = ComboBox::from_id_salt("pattern frequency").width(96.0).selected_text(text).show_ui(ui, |ui| {
+        let combo = ComboBox::from_id_salt("pattern frequency").width(96.0).selected_text(text).show_list(ui, |ui| {
             for f in freqs {
                 ui.selectable_value(&mut chosen.pattern_freq, Some(f), polar::freq_text(f));
             }
@@ -171,9 +188,6 @@ fn pattern_choices(ui: &mut Ui, solve: &SolveSession, facts: &Facts, chosen: &mu
             ui.selectable_value(&mut chosen.range_db, range, format!("{range:.0} dB")).on_hover_text(tip);
         }
     });
-    if Command::ShowPattern.tool_button(ui, facts) {
-        out.push(Action::Run(Command::ShowPattern));
-    }
 }
 
 fn empty(ui: &mut Ui, solve: &SolveSession, facts: &Facts, out: &mut Outbox) {

@@ -141,6 +141,7 @@ impl Behavior<Pane> for Panes<'_> {
                 let mut content = |ui: &mut Ui| self.app.pane(ui, *pane, self.facts, self.out);
                 if Pane::BELOW.contains(pane) {
                     // They fill the room there is and scroll what needs it.
+                    ui.set_min_size(ui.available_size());
                     content(ui);
                 } else {
                     ScrollArea::vertical().auto_shrink(false).id_salt(*pane).show(ui, content);
