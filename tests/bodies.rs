@@ -21,7 +21,8 @@ fn loose(mut solids: Vec<Solid>) -> Vec<LooseBody> {
 
 fn imported(files: &[&Path]) -> Project {
     let solids = files.iter().flat_map(|path| read(path, 1e-3).unwrap_or_else(|e| panic!("{e}"))).collect();
-    let bodies = BodiesSpec::weld(&loose(solids), WELD_MM).unwrap_or_else(|faults| panic!("{faults:?}"));
+    let bodies =
+        BodiesSpec::weld(&loose(solids), WELD_MM, &Task::default()).unwrap_or_else(|faults| panic!("{faults:?}"));
     let mut project = Project::default();
     Edit::SetBodies(Some(Box::new(bodies))).apply(&mut project).expect("valid");
     project
