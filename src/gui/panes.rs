@@ -74,7 +74,11 @@ impl App {
         let preview = self.state.preview.filter(|_| mesh.is_none());
         let on_show = self.compare.on_show_or(&self.session, preview);
         let pose = preview.and_then(|mode| self.compare.pose(mode)).or(own.as_ref());
-        let sources = Sources { session: &self.session, pose, mesh, solve, on_show, preview };
+        let project = self.session.project();
+        let refusals = [self.mesh.error(), self.solve.error()].into_iter().flatten();
+        let places = refusals.flat_map(|refusal| refusal.places_mm(project)).chain(self.session.places_mm());
+        let places_mm: Vec<[f64; 3]> = places.copied().collect();
+        let sources = Sources { session: &self.session, pose, mesh, solve, on_show, preview, places_mm: &places_mm };
         self.viewport.ui(ui, sources, &mut self.state, out);
     }
 
