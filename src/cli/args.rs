@@ -73,6 +73,13 @@ pub struct ImportArgs {
     /// Distance within which two places become one, mm
     #[arg(long, value_name = "MM", default_value_t = crate::project::WELD_MM)]
     pub(super) weld: f64,
+    /// Feed across the lowest gap between two metal bodies above each other at X,Y, or from one place on metal to another
+    /// at X,Y,Z,X,Y,Z, mm
+    #[arg(long, value_name = "PLACE", value_delimiter = ',', num_args = 1, allow_hyphen_values = true)]
+    pub(super) feed: Vec<f64>,
+    /// Resistance of the feed's source, ohm
+    #[arg(long, value_name = "OHM", default_value_t = 50.0)]
+    pub(super) feed_ohm: f64,
     /// Project file to write; without it the bodies are checked only
     #[arg(long, value_name = "JSON")]
     pub(super) out: Option<PathBuf>,

@@ -52,6 +52,7 @@ pub(super) fn run(args: &ImportArgs) -> Result<()> {
     };
     match BodiesSpec::weld(&loose, args.weld) {
         Ok(bodies) => {
+            let bodies = fed(bodies, args)?;
             let plc = bodies.to_plc();
             report.shared_facets = plc.n_shared_facets();
             for (body, (id, _)) in report.bodies.iter_mut().zip(plc.solids()) {
@@ -78,6 +79,16 @@ pub(super) fn run(args: &ImportArgs) -> Result<()> {
     let faults: Vec<&str> = report.faults.iter().map(|f| f.message.as_str()).collect();
     ensure!(faults.is_empty(), "the bodies cannot be welded:\n  {}", faults.join("\n  "));
     Ok(())
+}
+
+/// The bodies with the feed asked for, if any.
+fn fed(bodies: BodiesSpec, args: &ImportArgs) -> Result<BodiesSpec> {
+    match args.feed[..] {
+        [] => Ok(bodies),
+        [x, y] => Ok(bodies.with_upright_feed([x, y], args.feed_ohm)?),
+        [a, b, c, d, e, f] => Ok(bodies.with_feed([[a, b, c], [d, e, f]], args.feed_ohm)?),
+        _ => bail!("--feed takes two numbers (X,Y) or six (X,Y,Z,X,Y,Z)"),
+    }
 }
 
 fn solids(args: &ImportArgs) -> Result<Vec<Solid>> {

@@ -79,7 +79,7 @@ pub(super) fn ui(ui: &mut Ui, project: &Project, state: &mut UiState, out: &mut 
     let refused = state.refused.clone();
     let refused = Refused(refused.as_ref());
     if let Some(bodies) = &project.bodies {
-        return panel_bodies::ui(ui, project, bodies, refused, out);
+        return panel_bodies::ui(ui, project, bodies, state, out);
     }
     for (title, numbers) in groups() {
         section(ui, title, true, |ui| {

@@ -67,6 +67,16 @@ fn bodies_are_imported_shown_and_taken_back_by_one_undo() {
     assert!(shown.figures.is_none() && shown.flat.region("coax").is_some(), "on show");
     window.get_by_label_contains("figures of the patch's template");
     window.get_by_label("Patch template");
+    // Between ground and patch, beside the pin.
+    window.state_mut().state.feed.ends_mm[0] = [3.0, 2.0, 0.0];
+    lay_out(&mut window);
+    window.get_by_label("Place feed").click();
+    settle(&mut window);
+    let fed = project(&window).bodies.expect("bodies").feed.expect("placed");
+    assert!((fed.from_mm[2] + 1.575).abs() < 1e-3 && fed.to_mm[2].abs() < 1e-3, "across the substrate: {fed:?}");
+    window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
+    settle(&mut window);
+    assert_eq!(project(&window), after, "the feed is one step, undone to the bit");
     window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
     settle(&mut window);
     assert_eq!(project(&window), before, "one step back");

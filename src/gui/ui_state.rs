@@ -112,6 +112,22 @@ impl HeatPart {
     }
 }
 
+/// The feed of bodies as it is typed, and why it was not placed.
+#[derive(Clone, Debug)]
+pub(super) struct FeedUi {
+    /// Whether its heights are found between metal above each other.
+    pub(super) is_upright: bool,
+    pub(super) ends_mm: [[f64; 3]; 2],
+    pub(super) ohm: f64,
+    pub(super) error: Option<String>,
+}
+
+impl Default for FeedUi {
+    fn default() -> Self {
+        Self { is_upright: true, ends_mm: [[0.0; 3]; 2], ohm: 50.0, error: None }
+    }
+}
+
 /// Which panels the right side shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum RightTab {
@@ -320,6 +336,9 @@ pub(super) struct UiState {
     /// Wanted frequency and input resistance of the first guess.
     pub(super) guess_freq_ghz: f64,
     pub(super) guess_ohm: f64,
+    /// The feed of bodies being typed.
+    #[serde(skip)]
+    pub(super) feed: FeedUi,
     /// Name being typed for the substrate's values.
     #[serde(skip)]
     pub(super) material_name: String,
@@ -374,6 +393,7 @@ impl Default for UiState {
             equal_padding: true,
             guess_freq_ghz: 11.0,
             guess_ohm: 50.0,
+            feed: FeedUi::default(),
             material_name: String::new(),
             last_folder: None,
             recent_files: Vec::new(),

@@ -14,8 +14,9 @@ use super::scene::Scene;
 use super::solve::{SolveSettings, StopRule};
 use crate::antenna::PatchParams;
 use crate::deform::SmoothMap;
+use crate::geometry::tri_mesh::doubled_area_vector;
 use crate::geometry::{DVec2, DVec3};
-use crate::project::{CompensationMode, Project};
+use crate::project::{BodiesSpec, CompensationMode, Project};
 use crate::tlm::Pulse;
 use crate::units::{C0, from_mm};
 use std::f64::consts::{LN_10, PI};
@@ -65,8 +66,8 @@ pub fn estimate(
     settings: &SolveSettings,
     speed: f64,
 ) -> Result<Estimate, PipelineError> {
-    if project.bodies.is_some() {
-        return Err(PipelineError::TemplateOnly("solved"));
+    if let Some(bodies) = &project.bodies {
+        return estimate_bodies(bodies, settings, speed);
     }
     let [lo, hi] = settings.band;
     let pulse = Pulse::new(lo, hi)?;
@@ -87,6 +88,32 @@ pub fn estimate(
     let layer = rim.min(params.height / fineness.layers as f64);
     let dt = (STEP_OVER_LAYER * layer).min(STEP_OVER_PIN * pin) / C0;
     let time = duration(&params, settings, &pulse);
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive, and saturating")]
+    let count = |x: f64| x as usize;
+    Ok(Estimate {
+        n_tets: count(n_tets),
+        dt,
+        n_steps: count(time / dt),
+        bytes: count(BYTES_PER_TET * n_tets),
+        seconds: n_tets * (time / dt / speed.max(1.0) + SECONDS_PER_TET),
+    })
+}
+
+/// A rough guess for imported bodies, which may have parts of any thinness: cells within a factor of two, time of three.
+fn estimate_bodies(bodies: &BodiesSpec, settings: &SolveSettings, speed: f64) -> Result<Estimate, PipelineError> {
+    bodies.feed.ok_or(PipelineError::NoFeed)?;
+    let [lo, hi] = settings.band;
+    let pulse = Pulse::new(lo, hi)?;
+    let [edge, in_air] = super::bodies::edges(bodies, settings.mesh.density, settings.band);
+    let plc = bodies.to_plc();
+    let area: f64 = (0..plc.facets.len()).map(|f| doubled_area_vector(plc.corners(f)).length() / 2.0).sum();
+    let (low, high) = bodies.bounds();
+    let reach = (high - low).length() / 2.0 + C0 / (lo + hi);
+    let sphere = 4.0 / 3.0 * PI * reach.powi(3) / (0.118 * in_air.powi(3));
+    let n_tets = AIR_PER_TRIANGLE / 2.0 * area / (0.433 * edge * edge) + FILLED * sphere;
+    // Thin parts have short edges, of which the shortest are clipped.
+    let dt = STEP_OVER_LAYER * (edge / 4.0).min((high - low).min_element()) / C0;
+    let time = (pulse.end() + 20.0 / lo).min(settings.longest);
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive, and saturating")]
     let count = |x: f64| x as usize;
     Ok(Estimate {

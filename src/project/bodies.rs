@@ -4,9 +4,9 @@
 //! wherever the files are that it came from. It is large and never changes by hand: all copies of a project share one.
 
 use super::{MaterialSpec, materials};
-use crate::antenna::bodies::{MAX_TRIANGLES, weld};
+use crate::antenna::bodies::{Gap, GapError, MAX_TRIANGLES, gap, upright, weld};
 use crate::antenna::{Body, BodyFault, Dielectric};
-use crate::geometry::{DVec3, Facet, Plc, PlcError, Region, RegionId, RegionRole, TriMesh, VertexId};
+use crate::geometry::{DVec2, DVec3, Facet, Plc, PlcError, Region, RegionId, RegionRole, TriMesh, VertexId};
 use crate::io::bodies::Solid;
 use crate::io::{Material, Role};
 use crate::units::{from_mm, to_mm};
@@ -24,6 +24,21 @@ pub struct BodiesSpec {
     pub weld_mm: f64,
     /// Their surface.
     pub shape: Shape,
+    /// Where they are fed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub feed: Option<FeedSpec>,
+}
+
+/// A lumped port across a gap between metal: a source with a resistance along a straight line.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FeedSpec {
+    /// One end, on metal, mm.
+    pub from_mm: [f64; 3],
+    /// The other end, mm.
+    pub to_mm: [f64; 3],
+    /// Resistance of the source, ohm.
+    pub ohm: f64,
 }
 
 /// What one body is.
@@ -112,6 +127,22 @@ pub enum BodiesError {
     /// The surface is no complex.
     #[error("shape: {0}; import the bodies again")]
     Complex(PlcError),
+    /// The feed has no gap.
+    #[error("feed: {0}")]
+    Feed(#[from] GapError),
+    /// The source's resistance is out of range.
+    #[error("feed.ohm is {value}, but must lie between {lo} and {hi}")]
+    Ohm {
+        /// Its value, ohm.
+        value: f64,
+        /// Smallest allowed.
+        lo: f64,
+        /// Greatest allowed.
+        hi: f64,
+    },
+    /// With the feed's ends the bodies cannot be welded.
+    #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
+    Faults(Vec<BodyFault>),
     /// A compensation was asked for.
     #[error("imported bodies are deformed as drawn: compensation needs the patch's template; choose none")]
     Compensated,
@@ -122,6 +153,8 @@ pub enum BodiesError {
 pub const WELD_MM: f64 = 0.001;
 /// Names of materials that are metal.
 const METALS: [&str; 9] = ["metal", "pec", "copper", "silver", "gold", "aluminium", "aluminum", "brass", "conductor"];
+/// Range of a source's resistance, ohm.
+const OHM: (f64, f64) = (0.1, 10_000.0);
 /// Range of a coordinate, mm.
 const REACH_MM: f64 = 1e5;
 
@@ -249,8 +282,49 @@ impl BodiesSpec {
             let (role, material) = spec.made_of();
             Body { name: spec.name.clone(), role, material, surface: surface.clone() }
         };
-        let plc = weld(&loose.iter().map(body).collect::<Vec<_>>(), from_mm(weld_mm))?;
-        Ok(Self { bodies: loose.iter().map(|b| b.spec.clone()).collect(), weld_mm, shape: Shape::of(&plc) })
+        let plc = weld(&loose.iter().map(body).collect::<Vec<_>>(), &[], from_mm(weld_mm))?;
+        let bodies = loose.iter().map(|b| b.spec.clone()).collect();
+        Ok(Self { bodies, weld_mm, shape: Shape::of(&plc), feed: None })
+    }
+
+    /// The same bodies fed across a gap between two places on metal, mm, which become vertices of the shape.
+    ///
+    /// # Errors
+    /// [`BodiesError`] saying what is wrong with the feed.
+    pub fn with_feed(&self, ends_mm: [[f64; 3]; 2], ohm: f64) -> Result<Self, BodiesError> {
+        let ends = ends_mm.map(|end| DVec3::from_array(end.map(from_mm)));
+        let (plc, tolerance) = (self.to_plc(), from_mm(self.weld_mm));
+        let body = |(id, region): (RegionId, &Region)| Body {
+            name: region.name.clone(),
+            role: region.role,
+            material: Dielectric { eps_r: region.eps_r, tan_delta: region.tan_delta },
+            surface: plc.boundary(id),
+        };
+        let bodies: Vec<Body> = plc.solids().map(body).collect();
+        let plc = weld(&bodies, &ends, tolerance).map_err(BodiesError::Faults)?;
+        let gap = gap(&plc, ends, tolerance)?;
+        let [from_mm, to_mm] = gap.ends.map(|v| plc.vertices[v.index()].to_array().map(to_mm));
+        let fed = Self { shape: Shape::of(&plc), feed: Some(FeedSpec { from_mm, to_mm, ohm }), ..self.clone() };
+        fed.validate()?;
+        Ok(fed)
+    }
+
+    /// The same bodies fed across the lowest gap between metal above each other at a place, mm.
+    ///
+    /// # Errors
+    /// As [`BodiesSpec::with_feed`].
+    pub fn with_upright_feed(&self, [x_mm, y_mm]: [f64; 2], ohm: f64) -> Result<Self, BodiesError> {
+        let ends = upright(&self.to_plc(), DVec2::new(from_mm(x_mm), from_mm(y_mm)))?;
+        self.with_feed(ends.map(|end| end.to_array().map(to_mm)), ohm)
+    }
+
+    /// The feed's gap in the complex, if there is a feed.
+    ///
+    /// # Errors
+    /// [`GapError`] if the feed does not belong to the shape.
+    pub fn gap(&self) -> Result<Option<Gap>, GapError> {
+        let ends = |feed: FeedSpec| [feed.from_mm, feed.to_mm].map(|end| DVec3::from_array(end.map(from_mm)));
+        self.feed.map(|feed| gap(&self.to_plc(), ends(feed), from_mm(self.weld_mm))).transpose()
     }
 
     fn regions(&self) -> Vec<Region> {
@@ -285,6 +359,15 @@ impl BodiesSpec {
                 if !(lo..=hi).contains(&value) {
                     return Err(BodiesError::Material { index, name: name.clone(), quantity, value, lo, hi });
                 }
+            }
+        }
+        if let Some(FeedSpec { from_mm, to_mm, ohm }) = self.feed {
+            let (lo, hi) = OHM;
+            if !(lo..=hi).contains(&ohm) {
+                return Err(BodiesError::Ohm { value: ohm, lo, hi });
+            }
+            if !from_mm.iter().chain(&to_mm).all(|c| c.abs() <= REACH_MM) {
+                return Err(BodiesError::Numbers("an end of the feed is out of range"));
             }
         }
         // Of the regions only their number and names count, and a list of another length is another list.

@@ -53,7 +53,7 @@ pub enum Edit {
     /// Replaces the list of the user's own materials.
     SetMaterials(Vec<MaterialSpec>),
     /// Puts bodies in place of the antenna's template, or takes them away; bodies are not compensated, and those of
-    /// another shape begin flat.
+    /// another extent begin flat.
     SetBodies(Option<Box<BodiesSpec>>),
     /// Puts another whole project in its place.
     Restore(Box<Project>),
@@ -128,8 +128,8 @@ impl Edit {
             Self::SetMaterials(materials) => project.materials = materials,
             Self::SetBodies(bodies) => {
                 let bodies = bodies.map(|b| *b);
-                let shape = |b: &Option<BodiesSpec>| b.as_ref().map(|b| b.shape.clone());
-                if shape(&project.bodies) != shape(&bodies) {
+                let extent = |b: &Option<BodiesSpec>| b.as_ref().map(BodiesSpec::bounds);
+                if extent(&project.bodies) != extent(&bodies) {
                     project.hand_edits.clear();
                     project.presets.clear();
                 }

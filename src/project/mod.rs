@@ -16,7 +16,7 @@ pub mod materials;
 mod name;
 mod outline;
 
-pub use bodies::{BodiesError, BodiesSpec, BodyKind, BodySpec, LooseBody, Shape, WELD_MM};
+pub use bodies::{BodiesError, BodiesSpec, BodyKind, BodySpec, FeedSpec, LooseBody, Shape, WELD_MM};
 pub use check::ProjectError;
 pub use edit::{Edit, EditError};
 pub use example::Example;

@@ -69,6 +69,7 @@ pub(super) fn step_name(before: &Project, after: &Project) -> String {
 fn bodies_name(before: Option<&BodiesSpec>, after: Option<&BodiesSpec>) -> String {
     let name = match (before, after) {
         (_, None) => "Back to the patch template",
+        (Some(before), Some(after)) if before.feed != after.feed => "Feed of bodies",
         (Some(before), Some(after)) if before.shape == after.shape => "Materials of bodies",
         _ => "Import bodies",
     };

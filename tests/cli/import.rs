@@ -32,7 +32,9 @@ fn an_export_is_imported_bent_and_proved_again() {
     let bent = bench.json("deform own.json --out bent --json");
     assert!(bent["figures"].is_null() && bent["export"]["files"].as_array().is_some(), "no figures: {bent}");
     bench.ok("verify bent");
-    bench.fails("mesh own.json", 1, "imported bodies cannot be meshed yet");
+    bench.fails("solve own.json --band 7 14", 1, "the imported bodies have no feed");
+    bench.fails("import flat/antenna.glb --feed 9,9", 1, "no gap between two metal bodies");
+    bench.fails("import flat/antenna.glb --feed 3,2,1", 1, "--feed takes two numbers");
     bench.fails("import flat/antenna.glb --out own.json", 1, "--force");
     bench.fails("deform own.json --compensate wl", 1, "compensation needs the patch's template");
 }

@@ -16,12 +16,14 @@
 
 mod cells;
 mod fault;
+pub mod gap;
 mod imprint;
 mod inspect;
 #[cfg(test)]
 pub(crate) mod tests;
 
 pub use fault::BodyFault;
+pub use gap::{Gap, GapError, gap, upright};
 
 use super::Dielectric;
 use crate::geometry::{DVec3, Facet, Plc, Region, RegionId, RegionRole, TriMesh, VertexId};
@@ -68,12 +70,16 @@ struct Face {
 
 /// Welds bodies into one complex: the air, then a region for each body in their order.
 ///
+/// * `places`: become vertices where they lie on a surface, m.
 /// * `tolerance`: distance within which two places are one, m; well above rounding, well below the thinnest part.
 ///
 /// # Errors
 /// Everything that is wrong, with the places.
-pub fn weld(bodies: &[Body], tolerance: f64) -> Result<Plc, Vec<BodyFault>> {
-    let (mut soup, merge) = gather(bodies, tolerance)?;
+pub fn weld(bodies: &[Body], places: &[DVec3], tolerance: f64) -> Result<Plc, Vec<BodyFault>> {
+    let (mut soup, mut merge) = gather(bodies, tolerance)?;
+    for &place in places {
+        merge.vertex(place, &mut soup.vertices);
+    }
     let nodes = imprint::imprint(&mut soup, merge, tolerance);
     let (faces, mut faults) = cells::cut(&soup, &nodes, bodies);
     let plc = join(&soup.vertices, &faces, bodies, &mut faults);
