@@ -176,11 +176,18 @@ fn the_gizmo_is_on_top_and_the_grid_is_behind() {
     assert!(inside[1].abs_diff(inside[0]) < 10, "no grid through the plate: {inside:?}");
     let blue = [40, 80, 250, 255];
     let yellow = [250, 220, 40, 255];
-    scene.gizmo =
-        Some(Gizmo { center: Vec3::ZERO, colors: [blue; 4], hot: Some(GizmoPart::Center), hot_color: yellow });
+    scene.gizmo = Some(Gizmo {
+        center: Vec3::ZERO,
+        is_whole: true,
+        colors: [blue; 4],
+        hot: Some(GizmoPart::Center),
+        hot_color: yellow,
+    });
     let after = picture(&gpu, &scene, &view).unwrap();
     let shaft = view.project(Vec3::ZERO).unwrap().at.as_uvec2();
     assert_near(after.at(shaft.x + 35, shaft.y), blue, 1, "the arrow along x");
+    assert_near(after.at(shaft.x + 92, shaft.y), blue, 1, "the knob beyond its tip");
+    assert_near(after.at(shaft.x - 36, shaft.y + 35), blue, 1, "the ring about z");
     assert_near(after.at(shaft.x + 1, shaft.y + 1), yellow, 1, "the center under the pointer");
 }
 

@@ -3,7 +3,9 @@
 use super::args::InfoArgs;
 use super::report::table;
 use crate::pipeline::Scene;
-use crate::project::{AntennaSpec, MaterialSpec, MetalSpec, PresetSpec, Project, ResistorSpec, file};
+use crate::project::{
+    AntennaSpec, BodiesSpec, FeedSpec, MaterialSpec, MetalSpec, PresetSpec, Project, ResistorSpec, file,
+};
 use anyhow::Result;
 use serde::Serialize;
 
@@ -34,7 +36,7 @@ impl Report<'_> {
     fn text(&self) -> String {
         let (cage, settings) = (self.project.cage, self.project.settings);
         let mut rows = match &self.project.bodies {
-            Some(bodies) => bodies.bodies.iter().map(|b| (b.name.clone(), b.kind.to_string())).collect(),
+            Some(bodies) => body_rows(bodies),
             None => antenna_rows(&self.project.antenna),
         };
         let mut row = |name: &str, text: String| rows.push((name.to_owned(), text));
@@ -57,6 +59,15 @@ impl Report<'_> {
         let width = table(&names).lines().map(|l| l.chars().count()).max().unwrap_or(0);
         rows.iter().map(|(name, text)| format!("{name:<width$}  {text}")).collect::<Vec<_>>().join("\n")
     }
+}
+
+/// What bodies are made of, and their feed.
+fn body_rows(spec: &BodiesSpec) -> Vec<(String, String)> {
+    let feed = spec.feed.map(|FeedSpec { from_mm: from, to_mm: to, ohm }| {
+        let place = |[x, y, z]: [f64; 3]| format!("({x:.4}, {y:.4}, {z:.4})");
+        ("feed".to_owned(), format!("{ohm} ohm from {} to {} mm", place(from), place(to)))
+    });
+    spec.bodies.iter().map(|b| (b.name.clone(), b.kind.to_string())).chain(feed).collect()
 }
 
 /// The template's dimensions and materials.

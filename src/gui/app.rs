@@ -19,7 +19,7 @@ use super::session::{News, Session, first_project};
 use super::solve_session::{SolveNews, SolveSession};
 use super::status::{Messages, Weight};
 use super::theme;
-use super::ui_state::{Heat, RightTab, Tab, UiState};
+use super::ui_state::{RightTab, Tab, UiState};
 use super::viewport::Viewport;
 use super::{APP_ID, paint, palette};
 use crate::pipeline::compare_job::CompareJob;
@@ -125,7 +125,7 @@ impl App {
             has_bodies: project.bodies.is_some(),
             compensates: project.settings.compensation != CompensationMode::None,
             orthographic: self.state.camera.projection == Projection::Orthographic,
-            is_painted: self.state.heat != Heat::None,
+            heat: self.state.heat,
             is_comparing: self.compare.is_busy(),
             has_cylinder: has_cylinder(project),
             shows_ghost: self.state.shows_ghost,

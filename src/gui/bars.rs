@@ -4,6 +4,7 @@ use super::command::{Command, Facts};
 use super::notices::recent_item;
 use super::outbox::{Action, Outbox};
 use super::selecting::Pick;
+use super::ui_state::Heat;
 use crate::project::Example;
 use crate::render::{Operator, StandardView};
 use Command as C;
@@ -14,7 +15,7 @@ use std::path::PathBuf;
 pub(super) type Menu = (&'static str, &'static [&'static [Command]]);
 
 /// The menus from left to right. Every command stands in exactly one of them.
-pub(super) const MENUS: [Menu; 8] = [
+pub(super) const MENUS: [Menu; 9] = [
     (
         "File",
         &[
@@ -69,6 +70,19 @@ pub(super) const MENUS: [Menu; 8] = [
             &[C::ShowResults, C::ShowLog, C::ShowLeft, C::ShowRight, C::ResetLayout],
             &[C::ZoomIn, C::ZoomOut, C::ZoomReset],
             &[C::NextPanel, C::PreviousPanel],
+        ],
+    ),
+    (
+        "Heatmap",
+        &[
+            &[C::Paint(Heat::None)],
+            &[
+                C::Paint(Heat::Area),
+                C::Paint(Heat::MaxStrain),
+                C::Paint(Heat::MinStrain),
+                C::Paint(Heat::Thickness),
+                C::Paint(Heat::Distance),
+            ],
         ],
     ),
     (

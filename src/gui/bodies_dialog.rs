@@ -2,6 +2,7 @@
 
 use super::body_rows::body_rows;
 use super::dialogs::{PathField, Purpose, problem_with};
+use super::export_dialog::{answer, work};
 use super::field::rows;
 use super::outbox::{Action, Outbox};
 use super::theme::Tokens;
@@ -15,7 +16,7 @@ use crate::units::to_mm;
 use egui::{ComboBox, DragValue, RichText, ScrollArea, Spinner, Ui};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::sync::mpsc::Receiver;
 
 /// Range of the weld tolerance, mm.
 const WELD_RANGE_MM: (f64, f64) = (1e-6, 1.0);
@@ -165,11 +166,7 @@ impl BodiesDialog {
     /// Starts to read and weld what is asked for, and takes what was found.
     fn work(&mut self, ui: &Ui) {
         if let Some((asked, receiver)) = &self.working {
-            let found = match receiver.try_recv() {
-                Ok(found) => found,
-                Err(TryRecvError::Empty) => return,
-                Err(TryRecvError::Disconnected) => Err("the bodies could not be read: try again".to_owned()),
-            };
+            let Some(found) = answer(receiver) else { return };
             self.found = Some((asked.clone(), found));
             self.working = None;
         }
@@ -177,15 +174,8 @@ impl BodiesDialog {
         if is_done || self.asked.files.is_empty() {
             return;
         }
-        let (sender, receiver) = channel();
-        let (asked, ctx) = (self.asked.clone(), ui.ctx().clone());
-        let job = move || {
-            // The dialog may be gone by now.
-            let _ = sender.send(welded(&asked));
-            ctx.request_repaint();
-        };
-        // Without a thread the sender is dropped, which is told above.
-        let _ = std::thread::Builder::new().name("weld".to_owned()).spawn(job);
+        let asked = self.asked.clone();
+        let receiver = work(ui, move || welded(&asked).map_err(anyhow::Error::msg));
         self.working = Some((self.asked.clone(), receiver));
     }
 
@@ -211,7 +201,7 @@ impl BodiesDialog {
                 (solid.name.clone(), kind.clone(), format!("{n} triangles; material in the file: {material}"))
             })
             .collect();
-        ScrollArea::vertical().id_salt("bodies").max_height(LIST_HEIGHT).show(ui, |ui| {
+        ScrollArea::vertical().id_salt("body list").max_height(LIST_HEIGHT).show(ui, |ui| {
             if let Some((k, kind)) = body_rows(ui, &notes, &self.own) {
                 self.chosen.insert(notes[k].0.clone(), kind);
             }

@@ -21,7 +21,7 @@ pub(super) fn body_rows(
         for (k, (name, kind, note)) in bodies.iter().enumerate() {
             let label = ui.label(name).on_hover_text(note);
             let combo =
-                ComboBox::from_id_salt(("body", k)).width(150.0).height(320.0).selected_text(text(kind.as_ref()));
+                ComboBox::from_id_salt(("body", k)).width(122.0).height(320.0).selected_text(text(kind.as_ref()));
             let combo = combo.show_ui(ui, |ui| choices(ui, kind.as_ref(), own));
             combo.response.labelled_by(label.id).on_hover_text(format!("What {name} is made of"));
             if let Some(new) = combo.inner.flatten() {

@@ -3,6 +3,7 @@
 //! Menus, toolbar and shortcuts all read this one list, so that none can say something the others do not.
 
 use super::selecting::Pick;
+use super::ui_state::Heat;
 use crate::project::Example;
 use crate::render::{Operator, StandardView};
 use egui::ThemePreference;
@@ -47,6 +48,7 @@ pub(super) enum Command {
     Report,
     Compare,
     ShowGhost,
+    Paint(Heat),
     Fit,
     LookFrom(StandardView),
     Orthographic,
@@ -96,7 +98,7 @@ pub(super) struct Facts {
     pub(super) shows_left: bool,
     pub(super) shows_right: bool,
     pub(super) selects_by_box: bool,
-    pub(super) is_painted: bool,
+    pub(super) heat: Heat,
     pub(super) is_comparing: bool,
     pub(super) has_cylinder: bool,
     pub(super) shows_ghost: bool,
@@ -163,6 +165,12 @@ impl Command {
         Self::Report,
         Self::Compare,
         Self::ShowGhost,
+        Self::Paint(Heat::None),
+        Self::Paint(Heat::Area),
+        Self::Paint(Heat::MaxStrain),
+        Self::Paint(Heat::MinStrain),
+        Self::Paint(Heat::Thickness),
+        Self::Paint(Heat::Distance),
         Self::Fit,
         Self::LookFrom(StandardView::Front),
         Self::LookFrom(StandardView::Back),
@@ -250,6 +258,7 @@ impl Command {
             Self::Report => ("Save report…", "Write one page on the project, for any browser and for print"),
             Self::Compare => ("Compare compensations", "Compute it raw, by WL and isometrically, side by side"),
             Self::ShowGhost => ("Exact cylinder", "Draw the exact cylinder through the antenna"),
+            Self::Paint(heat) => (heat.text(), heat.tip()),
             Self::Fit => ("Fit", "Show all of the antenna and its cage, or of the mesh"),
             Self::LookFrom(view) => view_text(view),
             Self::Orthographic => ("Orthographic", "No perspective: equal lengths look equal"),
@@ -293,11 +302,13 @@ impl Command {
             Self::Solve => (!facts.is_solving, "a run is under way"),
             Self::ExportResults => (facts.has_results, "there are no results yet"),
             Self::SavePlot => (
-                facts.has_results || facts.has_mesh || facts.is_painted,
+                facts.has_results || facts.has_mesh || facts.heat != Heat::None,
                 "there is nothing to plot: no results, no mesh, nothing painted",
             ),
             Self::Compare => (!facts.is_comparing, "a comparison is under way"),
-            Self::ShowGhost => (facts.has_cylinder, "only a single bend without hand edits has one"),
+            Self::ShowGhost | Self::Paint(Heat::Distance) => {
+                (facts.has_cylinder, "only a single bend without hand edits has one")
+            }
             Self::ShowPattern => (facts.has_pattern, "no run with a pattern yet"),
             Self::BoxSelect | Self::LassoSelect | Self::Operate(_) | Self::ShowCage | Self::SeeThrough
                 if facts.shows_mesh =>
@@ -327,6 +338,7 @@ impl Command {
             Self::ShowResults => Some(facts.shows_results),
             Self::ShowPattern => Some(facts.shows_pattern),
             Self::ShowGhost => Some(facts.shows_ghost),
+            Self::Paint(heat) => Some(facts.heat == heat),
             Self::ShowCage => Some(facts.shows_cage),
             Self::SeeThrough => Some(facts.sees_through),
             Self::ShowHistory => Some(facts.shows_history),

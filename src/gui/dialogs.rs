@@ -331,7 +331,7 @@ fn keys(ui: &mut Ui) -> bool {
     ui.add_space(6.0);
     let mouse = [
         ("Drag a cage vertex", "Move it, or all selected ones, in the plane of the screen"),
-        ("Drag an arrow", "Move the selection along an axis"),
+        ("Drag an arrow, a ring, a knob", "Move, turn or scale the selection along or about an axis"),
         ("Click, Shift+click", "Select a vertex; add or remove one"),
         ("Ctrl+drag (Cmd on a Mac)", "Select by a lasso; Shift adds, Alt takes away"),
         ("Left drag on empty ground", "Turn the view"),

@@ -1,4 +1,5 @@
-//! What the 3-D view shows of editing: the operator at work, mirror planes and partners, hints for outlines.
+//! What the 3-D view shows of editing: the operator at work, mirror planes and partners, names of the gizmo's parts,
+//! hints for outlines.
 
 use super::edit_ui::{EditUi, Outline};
 use super::operating::Operating;
@@ -6,8 +7,9 @@ use super::overlay::hint;
 use super::session::Pose;
 use super::theme::Tokens;
 use super::ui_state::UiState;
-use crate::render::{Bound, Vec3, View};
-use egui::{Color32, Id, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, WidgetInfo, vec2};
+use crate::render::gizmo::grip;
+use crate::render::{Bound, Gizmo, GizmoPart, Vec3, View};
+use egui::{Color32, Id, Pos2, Rect, Response, Role, Sense, Shape, Stroke, Ui, WidgetInfo, vec2};
 
 /// Half length of the line that shows an axis, in heights of the view.
 const AXIS_REACH: f32 = 2.0;
@@ -79,6 +81,30 @@ pub(super) fn mirrors(ui: &Ui, rect: Rect, view: &View, (pose, handles): (&Pose,
         if let Some(at) = handles.get(*vertex as usize).and_then(|p| seen(view, rect, *p)) {
             let color: Color32 = tokens.handles[2];
             painter.circle_stroke(at, PARTNER_RADIUS, Stroke::new(1.5, color));
+        }
+    }
+}
+
+/// What a drag of a part of the gizmo does.
+pub(super) fn part_text(part: GizmoPart) -> String {
+    let name = |axis: usize| ["x", "y", "z"][axis];
+    match part {
+        GizmoPart::Center => "Move in the plane of the screen".to_owned(),
+        GizmoPart::Arrow(axis) => format!("Move along {}", name(axis)),
+        GizmoPart::Ring(axis) => format!("Turn about {}", name(axis)),
+        GizmoPart::Knob(axis) => format!("Scale along {}", name(axis)),
+    }
+}
+
+/// Gives each part of the gizmo a name for screen readers and tests; the view itself handles the pointer.
+pub(super) fn name_gizmo(ui: &Ui, response: &Response, view: &View, gizmo: &Gizmo) {
+    let of_axis = |axis| [GizmoPart::Arrow(axis), GizmoPart::Ring(axis), GizmoPart::Knob(axis)];
+    for part in (0..3).flat_map(of_axis).chain([GizmoPart::Center]) {
+        let Some(at) = grip(view, gizmo, part) else { continue };
+        let place = Rect::from_center_size(response.rect.min + vec2(at.x, at.y), vec2(12.0, 12.0));
+        if response.rect.contains_rect(place) {
+            let named = ui.interact(place, response.id.with(part), Sense::hover());
+            named.widget_info(|| WidgetInfo::labeled(Role::GraphicsSymbol, true, part_text(part)));
         }
     }
 }

@@ -178,7 +178,10 @@ impl ExportDialog {
 }
 
 /// Runs a job on a thread of its own and wakes the window at its end.
-pub(super) fn work(ui: &Ui, job: impl FnOnce() -> anyhow::Result<Vec<String>> + Send + 'static) -> Receiver<Outcome> {
+pub(super) fn work<T: Send + 'static>(
+    ui: &Ui,
+    job: impl FnOnce() -> anyhow::Result<T> + Send + 'static,
+) -> Receiver<Result<T, String>> {
     let (sender, receiver) = channel();
     let ctx = ui.ctx().clone();
     let run = move || {
@@ -187,11 +190,12 @@ pub(super) fn work(ui: &Ui, job: impl FnOnce() -> anyhow::Result<Vec<String>> + 
         ctx.request_repaint();
     };
     // Without a thread the sender is dropped, and `answer` says so.
-    let _ = std::thread::Builder::new().name("export".to_owned()).spawn(run);
+    let _ = std::thread::Builder::new().name("dialog".to_owned()).spawn(run);
     receiver
 }
 
-pub(super) fn answer(receiver: &Receiver<Outcome>) -> Option<Outcome> {
+/// What came of a job; `None` as long as it is at work.
+pub(super) fn answer<T>(receiver: &Receiver<Result<T, String>>) -> Option<Result<T, String>> {
     match receiver.try_recv() {
         Ok(outcome) => Some(outcome),
         Err(TryRecvError::Empty) => None,

@@ -5,7 +5,6 @@ use super::command::{Command, Facts};
 use super::outbox::Outbox;
 use super::status::{self, Workers};
 use super::ui_state::{Tab, UiState};
-use super::viewport::Sources;
 use super::{bars, panel_results};
 use crate::render::Projection;
 use egui::containers::panel::PanelState;
@@ -34,6 +33,7 @@ impl App {
             }
             Command::ShowCage => state.shows_cage = !state.shows_cage,
             Command::ShowGhost => state.shows_ghost = !state.shows_ghost,
+            Command::Paint(heat) => state.paint(heat),
             Command::SeeThrough => state.sees_through = !state.sees_through,
             Command::ShowHistory => {
                 let is_shown = state.tab == Tab::History && state.shows_left;
@@ -79,20 +79,10 @@ impl App {
             });
             shown.response.rect
         });
-        let [left, right] = self.side_panels(ui, facts, out);
-        let own = self.session.pose().cloned();
-        let view = CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
-            let mesh = self.mesh.shown().filter(|_| self.state.mesh.shows);
-            let solve = Some(&self.solve).filter(|_| self.state.solve.shows_pattern);
-            let preview = self.state.preview.filter(|_| mesh.is_none());
-            let on_show = self.compare.on_show_or(&self.session, preview);
-            let pose = preview.and_then(|mode| self.compare.pose(mode)).or(own.as_ref());
-            let sources = Sources { session: &self.session, pose, mesh, solve, on_show, preview };
-            self.viewport.ui(ui, sources, &mut self.state, out);
-        });
-        let (status, view) = (status.response.rect, view.response.rect);
-        let all = [Some(menus), Some(tools), left, Some(view), right, results, log, Some(status)];
-        self.areas = all.into_iter().flatten().collect();
+        CentralPanel::default().frame(Frame::NONE).show(ui, |ui| self.panes(ui, facts, out));
+        let panes = self.state.layout.areas().into_iter().map(Some);
+        let below = [results, log, Some(status.response.rect)];
+        self.areas = [Some(menus), Some(tools)].into_iter().chain(panes).chain(below).flatten().collect();
         results.map_or(0.0, |rect| rect.height()) + log.map_or(0.0, |rect| rect.height())
     }
 
@@ -137,6 +127,7 @@ pub(super) fn set_scale(ctx: &Context, state: &mut UiState, scale: f32) {
 fn reset_layout(ctx: &Context, state: &mut UiState) {
     let first = UiState::default();
     (state.shows_left, state.shows_right) = (first.shows_left, first.shows_right);
+    (state.layout, state.tabs_seen) = (first.layout, None);
     (state.tab, state.right_tab, state.shows_log) = (first.tab, first.right_tab, first.shows_log);
     state.solve.shows_results = first.solve.shows_results;
     ctx.data_mut(|data| data.remove_by_type::<PanelState>());

@@ -76,7 +76,7 @@ impl Command {
             Self::ResetLayout | Self::ClearRecent | Self::Welcome | Self::Example(_) => Vec::new(),
             Self::ImportOutline | Self::ImportBodies => Vec::new(),
             Self::SavePlot | Self::SavePicture | Self::Report | Self::Compare | Self::ShowGhost => Vec::new(),
-            Self::ResetAll | Self::CompensateNot | Self::ShowLog | Self::Theme(_) => Vec::new(),
+            Self::Paint(_) | Self::ResetAll | Self::CompensateNot | Self::ShowLog | Self::Theme(_) => Vec::new(),
         }
     }
 }

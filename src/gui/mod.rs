@@ -38,6 +38,7 @@ mod guard;
 mod hand_edits;
 mod heat;
 mod keys;
+mod layout;
 mod mark_overlay;
 mod mesh_export;
 mod mesh_scene;
@@ -63,6 +64,7 @@ mod panel_results;
 mod panel_solve;
 mod panel_stack;
 mod panel_vertices;
+mod panes;
 mod pattern_scene;
 mod picture;
 mod play;
@@ -78,7 +80,6 @@ mod result_export;
 mod scene;
 mod selecting;
 mod session;
-mod sides;
 mod smith;
 mod solve_session;
 mod status;
@@ -92,6 +93,8 @@ mod tests_edit;
 mod tests_materials;
 #[cfg(test)]
 mod tests_mesh;
+#[cfg(test)]
+mod tests_pictures;
 #[cfg(test)]
 mod tests_random;
 #[cfg(test)]

@@ -94,7 +94,11 @@ pub(super) fn recovery(ui: &mut Ui, found: &[Found], out: &mut Outbox) -> bool {
                 }
                 ui.horizontal(|ui| {
                     let tip = "Open it with its unsaved changes; the file stays as it is until you save";
-                    if ui.button("Recover").on_hover_text(tip).clicked() {
+                    let recover = ui.button("Recover").on_hover_text(tip);
+                    if index == 0 && ui.memory(|m| m.focused().is_none()) {
+                        recover.request_focus();
+                    }
+                    if recover.clicked() {
                         out.push(Action::Recover(index));
                     }
                     let tip = "Delete these changes for good";

@@ -1,6 +1,6 @@
 //! An operator at work on the selected vertices: pointer and keys in, edits of the project out.
 //!
-//! It begins with a key (the pointer then drives it until a click or Enter) or with a drag of a vertex or an arrow (it
+//! It begins with a key (the pointer then drives it until a click or Enter) or with a drag of a vertex or of the gizmo (it
 //! ends when the button comes up). Everything is measured from the cage as it was at the beginning; the edits lie
 //! between `Begin` and `End` or `Cancel`, so that an operator is one undo step or none. What an operator does to a
 //! place is [`crate::render::operator`]'s; the partners of mirrored vertices are [`crate::cage::mirror`]'s.
@@ -224,7 +224,12 @@ impl Operating {
         let before = self.at;
         self.at += pace * (pointer - self.pointer);
         self.pointer = pointer;
-        self.turned += Stage { view, pivot: self.pivot }.turn(before, self.at);
+        let stage = Stage { view, pivot: self.pivot };
+        self.turned += match self.bound {
+            // A ring follows the pointer.
+            Bound::Axis(axis) if self.is_held => stage.turn_about(axis, before, self.at),
+            _ => stage.turn(before, self.at),
+        };
     }
 
     /// What pointer and numbers ask for now; `None` keeps what it was.

@@ -37,7 +37,6 @@ pub(super) fn ui(ui: &mut Ui, heated: Option<&Heated>, has_cylinder: bool, state
 }
 
 fn choices(ui: &mut Ui, has_cylinder: bool, state: &mut UiState) {
-    let before = state.heat;
     ui.horizontal(|ui| {
         let label = ui.label("Paint");
         let combo = ComboBox::from_id_salt("heat").width(132.0).selected_text(state.heat.text()).show_ui(ui, |ui| {
@@ -45,7 +44,7 @@ fn choices(ui: &mut Ui, has_cylinder: bool, state: &mut UiState) {
                 let button = egui::Button::selectable(state.heat == heat, heat.text());
                 let response = ui.add_enabled(heat != Heat::Distance || has_cylinder, button).on_hover_text(heat.tip());
                 if response.on_disabled_hover_text("Only a single bend without hand edits has a cylinder").clicked() {
-                    state.heat = heat;
+                    state.paint(heat);
                 }
             }
         });
@@ -62,9 +61,6 @@ fn choices(ui: &mut Ui, has_cylinder: bool, state: &mut UiState) {
         });
         part.response.labelled_by(label.id).on_hover_text("Which parts are painted, and rule the range");
     });
-    if before.unit() != state.heat.unit() {
-        state.heat_ends = None;
-    }
 }
 
 fn range(ui: &mut Ui, heated: &Heated, state: &mut UiState) {
@@ -91,10 +87,14 @@ fn range(ui: &mut Ui, heated: &Heated, state: &mut UiState) {
     }
 }
 
-/// Two to four round marks up to a value.
-fn marks(greatest: f64) -> Vec<GridMark> {
-    let step = f64::from(round_length((greatest / 2.0) as f32));
-    (0..=4).map(|k: u8| GridMark { value: step * f64::from(k), step_size: step }).collect()
+/// Some round marks between two values.
+fn marks([lo, hi]: [f64; 2]) -> Vec<GridMark> {
+    let step = f64::from(round_length(((hi - lo) / 3.0) as f32));
+    let first = (lo / step).ceil();
+    (0..=8_u8)
+        .map(|k| GridMark { value: step * (first + f64::from(k)), step_size: step })
+        .filter(|mark| mark.value <= hi)
+        .collect()
 }
 
 fn histogram(ui: &mut Ui, heated: &Heated, state: &UiState, out: &mut Outbox) {
@@ -120,7 +120,8 @@ fn histogram(ui: &mut Ui, heated: &Heated, state: &UiState, out: &mut Outbox) {
         .include_x(f64::from(lo))
         .include_x(f64::from(hi))
         .include_y(0.0)
-        .y_grid_spacer(move |_| marks(greatest))
+        .x_grid_spacer(move |_| marks([lo, hi].map(f64::from)))
+        .y_grid_spacer(move |_| marks([0.0, greatest]))
         .custom_x_axes(vec![values])
         .custom_y_axes(vec![areas])
         .show_x(false)

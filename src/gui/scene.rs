@@ -249,7 +249,7 @@ impl SceneBuilder {
     }
 }
 
-/// Arrows at the middle of the selection.
+/// The gizmo at the middle of the selection.
 pub(super) fn gizmo(handles: &[Vec3], state: &UiState, tokens: &Tokens, hot: Hot) -> Option<Gizmo> {
     let selected: Vec<Vec3> = state.selection.iter().filter_map(|&v| handles.get(v as usize).copied()).collect();
     if selected.is_empty() {
@@ -259,6 +259,7 @@ pub(super) fn gizmo(handles: &[Vec3], state: &UiState, tokens: &Tokens, hot: Hot
     let [x, y, z] = tokens.axes.map(rgba);
     Some(Gizmo {
         center,
+        is_whole: selected.len() > 1,
         colors: [x, y, z, rgba(tokens.handles[2])],
         hot: hot.gizmo,
         hot_color: rgba(tokens.handles[1]),

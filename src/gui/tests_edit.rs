@@ -8,7 +8,7 @@ use super::preset_fields;
 use super::tests::{Window, button, drag, drop, lone_vertex, move_to, project, settle, vertex_place, window};
 use crate::geometry::DVec3;
 use crate::project::{PresetSpec, Project};
-use crate::render::Operator;
+use crate::render::{GizmoPart, Operator};
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2, vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -131,11 +131,7 @@ fn typed_moves_turns_and_scalings_are_exact_and_one_step_each() {
     is_one_step(&mut window, &before);
 
     select(&mut window, &[a, b]);
-    let places = |window: &mut Window| {
-        let pose = window.state_mut().session.pose().expect("a cage").clone();
-        [a, b].map(|v| pose.vertices[v as usize] * 1e3)
-    };
-    let [start_a, start_b] = places(&mut window);
+    let [start_a, start_b] = places(&mut window, [a, b]);
     for (keys, number, expected) in [
         ([Key::S, Key::X], "1.2", 0.1 * (start_b - start_a).x),
         ([Key::R, Key::Z], "-10-", (start_b.x - start_a.x) * (10.0_f64.to_radians().cos() - 1.0) / 2.0),
@@ -157,7 +153,7 @@ fn typed_moves_turns_and_scalings_are_exact_and_one_step_each() {
     write(&mut window, "2.5");
     press(&mut window, Modifiers::NONE, Key::Enter);
     settle(&mut window);
-    assert!((places(&mut window)[1].x - 2.5).abs() < 1e-3, "an absolute number is the place itself");
+    assert!((places(&mut window, [a, b])[1].x - 2.5).abs() < 1e-3, "an absolute number is the place itself");
     is_one_step(&mut window, &before);
 }
 
@@ -197,6 +193,71 @@ fn operators_follow_the_pointer_and_are_applied_by_a_click_or_given_up() {
     window.state_mut().state.selection.clear();
     press(&mut window, Modifiers::NONE, Key::G);
     assert!(!window.state().session.in_gesture(), "nothing to move");
+}
+
+/// Places of cage vertices, mm.
+fn places<const N: usize>(window: &mut Window, vertices: [u32; N]) -> [DVec3; N] {
+    let pose = window.state_mut().session.pose().expect("a cage");
+    vertices.map(|v| pose.vertices[v as usize] * 1e3)
+}
+
+#[test]
+fn rings_turn_and_knobs_scale_the_selection_in_one_step_each() {
+    let mut window = window();
+    let before = project(&window);
+    let chosen = [[3, 1, 1], [3, 3, 1], [7, 1, 1], [7, 3, 1]].map(number);
+    select(&mut window, &chosen);
+    window.state_mut().state.camera.distance *= 0.6;
+    window.step();
+    let start = places(&mut window, chosen);
+    let pivot = start.iter().sum::<DVec3>() / 4.0;
+    let grip = |window: &Window, part: &str| window.get_by_label(part).rect().center();
+    let center = grip(&window, "Move in the plane of the screen");
+
+    let from = grip(&window, "Turn about z");
+    move_to(&mut window, from);
+    window.step();
+    assert!(window.state().viewport.is_hot(GizmoPart::Ring(2)), "lit up under the pointer");
+    let to = center + egui::emath::Rot2::from_angle(-0.3) * (from - center);
+    drag(&mut window, from, to);
+    window.get_by_label_contains("Rotate about z");
+    drop(&mut window, to);
+    // Offsets are whole micrometres.
+    let angles: Vec<f64> = places(&mut window, chosen)
+        .iter()
+        .zip(&start)
+        .map(|(after, before)| {
+            let [a, b] = [*before - pivot, *after - pivot];
+            assert!((a.z - b.z).abs() < 1e-9 && (a.length() - b.length()).abs() < 2e-3, "a turn about z: {a} to {b}");
+            a.truncate().angle_to(b.truncate())
+        })
+        .collect();
+    assert!(angles[0] > 0.1 && angles.iter().all(|a| (a - angles[0]).abs() < 1e-3), "all alike: {angles:?}");
+    is_one_step(&mut window, &before);
+
+    let from = grip(&window, "Scale along x");
+    let to = center + (from - center) * 1.1;
+    drag(&mut window, from, to);
+    window.get_by_label_contains("Scale along x: ");
+    drop(&mut window, to);
+    for (after, before) in places(&mut window, chosen).iter().zip(&start) {
+        let expected = DVec3::new(1.1, 1.0, 1.0) * (*before - pivot);
+        assert!((*after - pivot - expected).length() < 2e-3, "a tenth longer: {after} from {before}");
+    }
+    is_one_step(&mut window, &before);
+
+    let from = grip(&window, "Turn about x");
+    drag(&mut window, from, from + vec2(12.0, 9.0));
+    assert_ne!(project(&window), before, "it turns");
+    window.key_press(Key::Escape);
+    window.step();
+    assert_eq!(project(&window), before, "given up");
+    drop(&mut window, from);
+    assert!(!window.state().session.history().can_undo(), "no step");
+    select(&mut window, &chosen[..1]);
+    window.step();
+    assert!(window.query_by_label("Turn about z").is_none(), "a single vertex is moved only");
+    window.get_by_label("Move along z");
 }
 
 #[test]

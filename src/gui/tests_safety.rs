@@ -51,7 +51,10 @@ fn edits_without_end() {
             carry_out(&mut window, Action::End);
         }
         window.step();
-        std::fs::write(Path::new(&dir).join("count"), count.to_string()).expect("writable");
+        // Whole at every moment, as the process is killed at any.
+        let [new, told] = ["count.new", "count"].map(|name| Path::new(&dir).join(name));
+        std::fs::write(&new, count.to_string()).expect("writable");
+        std::fs::rename(new, told).expect("writable");
         std::thread::sleep(Duration::from_millis(20));
     }
 }
@@ -86,7 +89,7 @@ fn work_of_a_killed_process_is_offered_and_recovered() {
     window.state_mut().offer_recovery();
     lay_out(&mut window);
     window.get_by_label("Unsaved work was found");
-    window.get_by_label("Recover").click();
+    window.key_press(egui::Key::Enter);
     lay_out(&mut window);
     let found = lifted(&project(&window));
     assert!(found > 0 && found <= count + 1, "a state that the process was in: {found} of {count}");

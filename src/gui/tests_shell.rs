@@ -3,8 +3,9 @@
 use super::app::UNKNOWN;
 use super::command::{Command, Facts};
 use super::dialogs::Dialog;
+use super::layout::Pane;
 use super::outbox::Action;
-use super::tests::{Window, lay_out, run, settle, window};
+use super::tests::{Window, drag, drop, lay_out, run, settle, window};
 use super::ui_state::{ResultTab, RightTab, Tab};
 use crate::project::{Example, PresetSpec};
 use egui::accesskit::{self, Role};
@@ -231,6 +232,36 @@ fn sides_are_hidden_and_the_layout_is_reset() {
     window.state_mut().carry_out(&ctx, Action::Run(Command::ResetLayout));
     window.run_steps(60);
     assert!((width(&window) - before).abs() < 1.0, "as at the start: {} and {before}", width(&window));
+}
+
+#[test]
+fn a_tab_is_dragged_to_another_place_kept_and_put_back() {
+    let mut window = window();
+    let view = |window: &Window| window.get_by_label("3-D view").rect();
+    let before = view(&window);
+    let from = window.get_by_label("History").rect().center();
+    let to = egui::pos2(before.right() - 30.0, before.center().y);
+    drag(&mut window, from, to);
+    drop(&mut window, to);
+    lay_out(&mut window);
+    let in_front = |window: &Window, pane| window.state().state.layout.is_in_front(pane);
+    assert!(in_front(&window, Pane::History) && in_front(&window, Pane::Cage), "side by side");
+    assert!(view(&window).width() < before.width() - 200.0, "beside the view: {}", view(&window));
+    assert_eq!(unnamed(&window), Vec::<String>::new(), "every tab has a name");
+    let text = serde_json::to_string(&window.state().state).expect("plain values");
+    let mut back: super::ui_state::UiState = serde_json::from_str(&text).expect("readable");
+    back.restore_camera();
+    assert_eq!(back.layout, window.state().state.layout, "kept between runs");
+    run(&mut window, Command::ResetLayout);
+    window.run_steps(4);
+    assert!((view(&window).width() - before.width()).abs() < 1.0, "as at the first start: {}", view(&window));
+    assert!(!in_front(&window, Pane::History), "behind the cage's tab again");
+    window.get_by_label("History").click();
+    lay_out(&mut window);
+    assert_eq!(window.state().state.tab, Tab::History, "a click brings it forward");
+    run(&mut window, Command::Mesh);
+    assert!(in_front(&window, Pane::Mesh), "a command brings its pane forward");
+    window.state_mut().mesh.cancel();
 }
 
 #[test]

@@ -28,7 +28,7 @@ pub(super) fn solved() -> Window {
     window
 }
 
-fn add(window: &mut Window, shape: Shape, freq: f64) {
+pub(super) fn add(window: &mut Window, shape: Shape, freq: f64) {
     let chosen = SolveUi { shape, ..SolveUi::default() };
     let request = request(&project(window), &chosen);
     window.state_mut().solve.add(request.job(), made_up(freq));

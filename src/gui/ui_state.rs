@@ -1,6 +1,7 @@
 //! What the user looks at and has selected: never part of a project, never undone, kept between runs.
 
 use super::edit_ui::EditUi;
+use super::layout::Layout;
 use super::play::Play;
 use crate::pipeline::{Density, Shape};
 use crate::project::CompensationMode;
@@ -14,7 +15,7 @@ use std::path::{Path, PathBuf};
 /// Files remembered as used last: more are no menu any more.
 const MAX_RECENT_FILES: usize = 10;
 
-/// Which tab the left panel shows.
+/// A pane that is left of the view at first.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Tab {
     /// Dimensions and materials.
@@ -128,7 +129,7 @@ impl Default for FeedUi {
     }
 }
 
-/// Which panels the right side shows.
+/// A pane that is right of the view at first.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum RightTab {
     /// Distortion and compensation.
@@ -312,8 +313,13 @@ pub(super) struct SavedCamera {
 #[serde(default)]
 #[allow(clippy::struct_excessive_bools, reason = "each is an independent switch of the window")]
 pub(super) struct UiState {
+    /// Of the panes that are left and right of the view at first, the one to be in front.
     pub(super) tab: Tab,
     pub(super) right_tab: RightTab,
+    /// Both as they were drawn last.
+    #[serde(skip)]
+    pub(super) tabs_seen: Option<(Tab, RightTab)>,
+    pub(super) layout: Layout,
     pub(super) theme: ThemePreference,
     pub(super) heat: Heat,
     pub(super) heat_part: HeatPart,
@@ -378,6 +384,8 @@ impl Default for UiState {
         Self {
             tab: Tab::default(),
             right_tab: RightTab::default(),
+            tabs_seen: None,
+            layout: Layout::default(),
             theme: ThemePreference::System,
             heat: Heat::None,
             heat_part: HeatPart::default(),
@@ -414,6 +422,14 @@ impl Default for UiState {
 }
 
 impl UiState {
+    /// Paints a quantity; a fixed range holds as long as the unit does.
+    pub(super) fn paint(&mut self, heat: Heat) {
+        if heat.unit() != self.heat.unit() {
+            self.heat_ends = None;
+        }
+        self.heat = heat;
+    }
+
     /// Ends of the colour bar: the fixed ones where they are a range, else those that follow the values.
     pub(super) fn heat_range(&self, auto: [f32; 2]) -> [f32; 2] {
         self.heat_ends.filter(|[lo, hi]| lo < hi).unwrap_or(auto)
@@ -462,6 +478,9 @@ impl UiState {
     pub(super) fn restore_camera(&mut self) {
         self.mesh.axis = self.mesh.axis.min(2);
         self.editing.restore();
+        if !self.layout.is_sound() {
+            self.layout = Layout::default();
+        }
         let Some(kept) = self.camera_kept else { return };
         let numbers = [kept.yaw, kept.pitch, kept.distance];
         if numbers.iter().chain(&kept.target).all(|v| v.is_finite()) && kept.distance > 0.0 {

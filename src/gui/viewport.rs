@@ -1,7 +1,7 @@
 //! The 3-D view: camera, picking and dragging cage vertices.
 //!
-//! What a drag does is decided where the button went down. A vertex or an arrow of the gizmo moves the selection
-//! ([`super::operating`]), one undo step per drag, live; empty ground turns the view (left), slides it (middle, right or
+//! What a drag does is decided where the button went down. A vertex or a part of the gizmo moves, turns or scales the
+//! selection ([`super::operating`]), one undo step per drag, live; empty ground turns the view (left), slides it (middle, right or
 //! Shift) or draws an outline around vertices (Ctrl a lasso; after a command a box or a lasso). Operators that a command
 //! began are driven by the pointer until a click. Places are points from the top left of the view.
 
@@ -28,7 +28,7 @@ use super::view_export::Shot;
 use crate::geometry::DVec3;
 use crate::project::CompensationMode;
 use crate::render::pick::{gizmo_at, handle_at};
-use crate::render::{Bound, Gizmo, GizmoPart, Operator, Scene, Vec2, Vec3, View};
+use crate::render::{Gizmo, GizmoPart, Operator, Scene, Vec2, Vec3, View};
 use egui::{Area, CursorIcon, EventFilter, Id, Key, Modifiers, Order, PointerButton, Pos2, Rect, Response, Role};
 use egui::{Sense, Ui, WidgetInfo};
 
@@ -96,10 +96,12 @@ struct Frame<'a> {
 }
 
 impl Frame<'_> {
-    /// The part of the gizmo under a place, with the gizmo's center.
+    /// The part of the gizmo under a place, with the gizmo's center; a vertex there comes before a ring.
     fn gizmo_at(&self, view: &View, at: Vec2) -> Option<(Vec3, GizmoPart)> {
         let gizmo = self.gizmo.as_ref()?;
-        gizmo_at(view, gizmo, at).map(|part| (gizmo.center, part))
+        let part = gizmo_at(view, gizmo, at)?;
+        let is_hidden = matches!(part, GizmoPart::Ring(_)) && handle_at(view, self.handles, at, GRAB_RADIUS).is_some();
+        (!is_hidden).then_some((gizmo.center, part))
     }
 
     fn subject(&self) -> Subject<'_> {
@@ -176,6 +178,12 @@ impl Viewport {
         self.wanted = Some(operator);
     }
 
+    /// Whether the pointer is over a part of the gizmo, or drags it.
+    #[cfg(test)]
+    pub(super) fn is_hot(&self, part: GizmoPart) -> bool {
+        self.hot.gizmo == Some(part)
+    }
+
     /// True while the pointer holds something or an operator runs: keys belong to that.
     pub(super) fn is_dragging(&self) -> bool {
         !matches!(self.drag, Drag::Nothing)
@@ -246,16 +254,16 @@ impl Viewport {
         let part = frame.gizmo_at(&view, from);
         let vertex = handle_at(&view, frame.handles, from, GRAB_RADIUS);
         let outline = state.editing.outline.take().or(modifiers.command.then_some(Outline::Lasso));
-        let operate = |grabbed: Vec3, lead: Option<u32>, bound: Bound, state: &UiState, out: &mut Outbox| {
-            let operating = frame.operate(Operator::Move, lead, from, state, out);
+        let operate = |part: GizmoPart, grabbed: Vec3, lead: Option<u32>, state: &UiState, out: &mut Outbox| {
+            let (operator, bound) = part.operation();
+            let operating = frame.operate(operator, lead, from, state, out);
             operating.map_or(Drag::Over, |o| Drag::Operate(Box::new(o.held(grabbed, bound))))
         };
         self.drag = if let Some(outline) = outline {
             Drag::Outline(Drawn::new(outline, from))
         } else if let Some((center, part)) = part {
             self.hot.gizmo = Some(part);
-            let axis = GizmoPart::ARROWS.iter().position(|arrow| *arrow == part);
-            operate(center, None, axis.map_or(Bound::Free, Bound::Axis), state, out)
+            operate(part, center, None, state, out)
         } else if let Some(index) = vertex {
             let vertex = u32::try_from(index).unwrap_or(u32::MAX);
             if !state.selection.contains(&vertex) {
@@ -265,7 +273,7 @@ impl Viewport {
                 state.selection.insert(vertex);
             }
             self.hot.vertex = Some(vertex);
-            operate(frame.handles[index], Some(vertex), Bound::Free, state, out)
+            operate(GizmoPart::Center, frame.handles[index], Some(vertex), state, out)
         } else if modifiers.shift {
             Drag::Pan
         } else {
@@ -392,6 +400,9 @@ impl Viewport {
     fn overlay(&mut self, ui: &Ui, response: &Response, frame: &Frame<'_>, state: &UiState, scene: &Scene) {
         let view = frame.view(ui, state);
         name_vertices(ui, response, frame, state, &view);
+        if let Some(gizmo) = &frame.gizmo {
+            edit_overlay::name_gizmo(ui, response, &view, gizmo);
+        }
         let bars = self.bars(frame, state);
         overlay::draw(ui, frame.rect, &view);
         overlay::bars(ui, frame.rect, &bars);
@@ -435,6 +446,8 @@ impl Viewport {
                 let hovered = self.hot.vertex.filter(|_| pointer.is_some());
                 if let (Some(vertex), Some(pose)) = (hovered, frame.pose) {
                     overlay::vertex_hint(ui, frame.rect, vertex, pose);
+                } else if let (Some(part), Some(_)) = (self.hot.gizmo, pointer) {
+                    overlay::hint(ui, frame.rect, &format!("{}: drag; Esc gives up", edit_overlay::part_text(part)));
                 } else if is_read {
                     // Its value is all there is to say.
                 } else if let (Some(at), Some(surface), None) = (pointer, scene.surfaces.first(), frame.mesh) {

@@ -101,14 +101,13 @@ mod tests {
         project.antenna.resistors.push(ResistorSpec { x_mm: 2.0, y_mm, ohm });
         let mesh = MeshSettings { density: Density::Coarse, metal: Metal::Sheet };
         let usual = SolveSettings::new(mesh, [7e9, 14e9]);
-        let settings = SolveSettings { stop: StopRule::Decay { db: 20.0 }, pattern_freqs: vec![10.6e9], ..usual };
+        let settings = SolveSettings { stop: StopRule::Decay { db: 40.0 }, pattern_freqs: vec![10.6e9], ..usual };
         let solved = solve(&project, Shape::Flat, &settings, None, &mut |_| (), &Task::default()).expect("it runs");
         let field = &solved.far_fields[0];
         let found = 1.0 / field.efficiency() - 1.0;
         // The current crowds at the patch's edges, which costs up to half as much again in the sheets.
         assert!((0.9..1.5).contains(&(found / expected)), "{found} against {expected}");
         let balance = field.near_balance().expect("power goes in");
-        // What the run cut off after 20 dB had still to give, and what the short line costs in any case.
-        assert!((balance - 1.0).abs() < 0.03, "near power balance {balance}");
+        assert!((balance - 1.0).abs() < 0.005, "near power balance {balance}");
     }
 }

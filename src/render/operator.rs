@@ -12,6 +12,8 @@ use crate::geometry::{DQuat, DVec3};
 
 /// Least distance from pivot to pointer that a scaling is measured by, points: nearer, a twitch is a factor of ten.
 const LEAST_REACH: f32 = 12.0;
+/// A plane that a line of sight meets by less than this cosine is seen from its edge.
+const LEAST_SLOPE: f64 = 0.05;
 /// Factors are snapped to a tenth.
 const FACTOR_STEP: f64 = 0.1;
 
@@ -147,6 +149,25 @@ impl Stage<'_> {
         let [a, b] = [from - center, to - center];
         // y points down on the screen.
         if a.length().min(b.length()) < 1.0 { 0.0 } else { -f64::from(a.angle_to(b)) }
+    }
+
+    /// The same about an axis through the pivot, in the plane across it: what lay under the pointer stays there. As
+    /// [`Self::turn`] where that plane is seen from its edge.
+    #[must_use]
+    pub fn turn_about(&self, axis: usize, from: Vec2, to: Vec2) -> f64 {
+        let normal = DVec3::AXES[axis];
+        let arm = |at: Vec2| {
+            let ray = self.view.ray(at);
+            let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
+            let slope = direction.dot(normal);
+            let reach = (self.pivot - origin).dot(normal) / slope;
+            let is_met = slope.abs() > LEAST_SLOPE && reach >= f64::from(ray.start);
+            is_met.then(|| (origin + reach * direction - self.pivot, slope))
+        };
+        let (Some((a, slope)), Some((b, _))) = (arm(from), arm(to)) else { return self.turn(from, to) };
+        let angle = normal.dot(a.cross(b)).atan2(a.dot(b));
+        // Counter-clockwise as seen, whichever way the axis points.
+        if slope > 0.0 { -angle } else { angle }
     }
 
     /// The change that the pointer asks for; `None` where the view does not tell (see [`displacement`]).
@@ -349,6 +370,21 @@ mod tests {
         let none = Steps { length: 0.0, angle: 0.0 };
         let as_it_was = Change::Move(DVec3::ONE / 3.0);
         assert_eq!(as_it_was.snapped(none), as_it_was, "no step");
+    }
+
+    #[test]
+    fn what_lies_under_the_pointer_turns_with_it() {
+        for camera in [StandardView::Isometric, StandardView::Bottom] {
+            let view = view(camera);
+            let stage = Stage { view: &view, pivot: PIVOT };
+            let seen = |place: DVec3| view.project(place.as_vec3()).expect("in view").at;
+            let arm = PIVOT + DVec3::new(6.0, 2.0, 0.0);
+            let to = seen(moved(Change::Rotate { axis: DVec3::Z, angle: 0.6 }, arm));
+            let turned = stage.turn_about(2, seen(arm), to);
+            let change = stage.pointed(Operator::Rotate, Bound::Axis(2), Vec3::ZERO, [seen(arm), to], turned);
+            let Some(Change::Rotate { angle, .. }) = change else { panic!("a turn") };
+            assert!((angle - 0.6).abs() < 1e-4, "{camera:?}: {angle}");
+        }
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! What lies under the pointer, on the processor: handles, arrows, and the surface with its value.
+//! What lies under the pointer, on the processor: handles, parts of the gizmo, and the surface with its value.
 //!
 //! Places on the screen are points from the top left, as everywhere in [`super`].
 
@@ -10,8 +10,11 @@ use super::{Vec2, Vec3};
 
 /// Handles whose distances from the pointer differ by less than this many points overlap: the nearer to the eye wins.
 const OVERLAP: f32 = 3.0;
-/// How far beside an arrow still counts, points.
+/// How far beside an arrow or a ring still counts, points.
 const ARROW_MARGIN: f32 = 6.0;
+const RING_MARGIN: f32 = 6.0;
+/// How far from the middle of a knob still counts, points.
+const KNOB_RADIUS: f32 = 10.0;
 /// How far beside the center still counts, points.
 const CENTER_MARGIN: f32 = 3.0;
 
@@ -49,7 +52,7 @@ pub fn handles_within(view: &View, positions: &[Vec3], outline: &[Vec2]) -> Vec<
     seen.filter(|&(_, &p)| view.project(p).is_some_and(|q| inside(q.at))).map(|(i, _)| i).collect()
 }
 
-/// The part of `gizmo` under the pointer; the center before the arrows, near arrows before far ones.
+/// The part of `gizmo` under the pointer: the center, then knobs and arrows, near ones before far ones, then the rings.
 #[must_use]
 pub fn gizmo_at(view: &View, gizmo: &Gizmo, pointer: Vec2) -> Option<GizmoPart> {
     let center = view.project(gizmo.center)?;
@@ -57,8 +60,20 @@ pub fn gizmo_at(view: &View, gizmo: &Gizmo, pointer: Vec2) -> Option<GizmoPart> 
         return Some(GizmoPart::Center);
     }
     let arms = gizmo::arms(view, gizmo.center);
-    let hit = arms.iter().rev().find(|arm| distance_to_segment(pointer, arm.from, arm.tip) <= ARROW_MARGIN);
-    hit.map(|arm| arm.part)
+    let knob = arms.iter().rev().find(|arm| gizmo.is_whole && arm.knob.distance(pointer) <= KNOB_RADIUS);
+    if let Some(arm) = knob {
+        return Some(GizmoPart::Knob(arm.axis));
+    }
+    let arrow = arms.iter().rev().find(|arm| distance_to_segment(pointer, arm.from, arm.tip) <= ARROW_MARGIN);
+    if let Some(arm) = arrow {
+        return Some(GizmoPart::Arrow(arm.axis));
+    }
+    let distance = |line: &[Vec2]| {
+        line.windows(2).map(|pair| distance_to_segment(pointer, pair[0], pair[1])).fold(f32::INFINITY, f32::min)
+    };
+    let rings = gizmo::rings(view, gizmo.center).into_iter().filter(|_| gizmo.is_whole);
+    let nearest = rings.map(|(axis, line)| (axis, distance(&line))).min_by(|a, b| a.1.total_cmp(&b.1));
+    nearest.filter(|(_, distance)| *distance <= RING_MARGIN).map(|(axis, _)| GizmoPart::Ring(axis))
 }
 
 fn distance_to_segment(point: Vec2, from: Vec2, to: Vec2) -> f32 {
@@ -190,16 +205,40 @@ mod tests {
     }
 
     #[test]
-    fn arrows_and_center_are_found_and_an_arrow_at_the_viewer_is_not() {
-        let gizmo = Gizmo { center: Vec3::ZERO, colors: [[0; 4]; 4], hot: None, hot_color: [0; 4] };
+    fn every_part_is_found_where_it_is_and_what_no_drag_could_use_is_not_there() {
+        let mut gizmo = Gizmo { center: Vec3::ZERO, is_whole: true, colors: [[0; 4]; 4], hot: None, hot_color: [0; 4] };
         let view = top();
         let middle = view.size / 2.0;
-        assert_eq!(gizmo_at(&view, &gizmo, middle), Some(GizmoPart::Center), "the middle");
-        assert_eq!(gizmo_at(&view, &gizmo, middle + Vec2::new(50.0, 3.0)), Some(GizmoPart::X), "to the right");
-        assert_eq!(gizmo_at(&view, &gizmo, middle - Vec2::new(3.0, 50.0)), Some(GizmoPart::Y), "upwards");
-        assert_eq!(gizmo_at(&view, &gizmo, middle + Vec2::new(-50.0, 0.0)), None, "there is no arrow to the left");
-        let has_z = gizmo::arms(&view, Vec3::ZERO).iter().any(|arm| arm.part == GizmoPart::Z);
+        let at = |gizmo: &Gizmo, x: f32, y: f32| gizmo_at(&view, gizmo, middle + Vec2::new(x, -y));
+        assert_eq!(at(&gizmo, 0.0, 0.0), Some(GizmoPart::Center), "the middle");
+        assert_eq!(at(&gizmo, 66.0, 3.0), Some(GizmoPart::Arrow(0)), "to the right");
+        assert_eq!(at(&gizmo, -3.0, 66.0), Some(GizmoPart::Arrow(1)), "upwards");
+        assert_eq!(at(&gizmo, -66.0, 0.0), None, "there is no arrow to the left");
+        assert_eq!(at(&gizmo, 92.0, -7.0), Some(GizmoPart::Knob(0)), "beyond the tip");
+        assert_eq!(at(&gizmo, -37.0, -37.0), Some(GizmoPart::Ring(2)), "around z, from the back too");
+        let has_z = gizmo::arms(&view, Vec3::ZERO).iter().any(|arm| arm.axis == 2);
         assert!(!has_z, "z points at the viewer");
+        let rings: Vec<usize> = gizmo::rings(&view, Vec3::ZERO).iter().map(|ring| ring.0).collect();
+        assert_eq!(rings, [2], "the others are seen from their edges");
+        gizmo.is_whole = false;
+        assert_eq!((at(&gizmo, 92.0, 0.0), at(&gizmo, -37.0, -37.0)), (None, None), "one vertex is not turned");
+    }
+
+    #[test]
+    fn each_part_can_be_taken_hold_of_at_its_grip_from_near_and_far() {
+        let gizmo = Gizmo { center: Vec3::ONE, is_whole: true, colors: [[0; 4]; 4], hot: None, hot_color: [0; 4] };
+        for distance in [40.0, 400.0] {
+            let mut camera = Camera { distance, ..Camera::default() };
+            camera.look_from(StandardView::Isometric);
+            let view = View::new(camera, 800.0, 600.0);
+            let center = on_screen(&view, gizmo.center);
+            let parts = (0..3).flat_map(|a| [GizmoPart::Arrow(a), GizmoPart::Ring(a), GizmoPart::Knob(a)]);
+            for part in parts.chain([GizmoPart::Center]) {
+                let grip = gizmo::grip(&view, &gizmo, part).expect("it is there");
+                assert_eq!(gizmo_at(&view, &gizmo, grip), Some(part), "at a distance of {distance}");
+                assert!(grip.distance(center) < 100.0, "{part:?}: of constant size on the screen");
+            }
+        }
     }
 
     /// A square of 20 mm in z = 0 and one below it, with the field 3x + 2.

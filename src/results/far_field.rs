@@ -196,8 +196,8 @@ impl FarField {
 
     /// The same with the power through the closed surface for that in the far field; `None` where nothing is accepted.
     ///
-    /// Cells balance it exactly, so what is missing was taken by the port's plane from waves other than the line's own
-    /// (0.9 % with 3 mm of line below the paper's patch, 0.1 % with 7 mm, at any density), or by the end of the run.
+    /// Cells and the line's end balance it exactly, so what is missing was cut off at the end of the run or is due to the
+    /// lossy cells' voltages, taken at their edges.
     #[must_use]
     pub fn near_balance(&self) -> Option<f64> {
         (self.powers.accepted > 0.0).then(|| (self.powers.crossing + self.powers.lost) / self.powers.accepted)

@@ -1,7 +1,7 @@
 //! A mesh as the field sees it: cells in their final order, which ports are live, materials, boundaries, loads.
 
 use super::TlmError;
-use super::blocks::{A_INVERSE, ADMITTANCE, LOSS, OBSERVATION, SOURCE, triangle};
+use super::blocks::{A_INVERSE, ADMITTANCE, LOSS, triangle};
 use super::cell::{Cell, EDGES, face_mass};
 use super::loads::Loads;
 use super::network::NetworkSettings;
@@ -11,20 +11,25 @@ use super::sheet_edge;
 use crate::geometry::{DVec3, VertexId};
 use crate::tet::{FaceRole, TetMesh, face_key};
 use crate::units::{C0, ETA0};
-use nalgebra::{DMatrix, Matrix3, Matrix6};
+use nalgebra::{DMatrix, Matrix3, Matrix3xX, Matrix6};
 use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
 use std::f64::consts::TAU;
+
+/// Parts that the cells fall into: without boundary faces, at the port, and at the outer boundary by the place of the outer
+/// face among the four, or with several, so that neighbors in a block have the same edges there.
+const WITHIN: u8 = 0;
+const AT_PORT: u8 = 1;
+const AT_OUTER: u8 = 2;
+pub(super) const N_PARTS: usize = 7;
 
 /// A mesh prepared for assembly: cells in their final order, vertices ascending.
 pub(super) struct Assembly<'a> {
     mesh: &'a TetMesh,
     /// Cells: corners ascending, and the number in the mesh.
     pub(super) cells: Vec<([VertexId; 4], usize)>,
-    /// Cells before the first of these have no boundary face, those from the second on lie at the outer sphere.
-    pub(super) ends: [usize; 2],
-    /// The waves that leave there.
-    pub(super) sphere: Option<OuterSphere>,
+    /// Where the cells of each part end, by its number.
+    pub(super) ends: [usize; N_PARTS],
     faces: BoundaryFaces,
     loads: Loads,
     /// Vertices at the edges of sheets, where the field is singular; empty without correction.
@@ -95,13 +100,18 @@ impl BoundaryFaces {
         })
     }
 
-    /// Which part of the cells one belongs to: 0 without boundary faces, 1 at the port, 2 at the outer boundary.
+    /// The part that a cell belongs to.
     fn part(&self, corners: [VertexId; 4], region: usize) -> u8 {
-        let faces = || faces_of(corners).into_iter().map(|(_, face)| face);
-        if faces().any(|f| self.outer.contains(&f)) {
-            return 2;
+        let faces = faces_of(corners).map(|(_, face)| face);
+        if faces.iter().any(|f| self.port_face(*f, region).is_some()) {
+            return AT_PORT;
         }
-        u8::from(faces().any(|f| self.port_face(f, region).is_some()))
+        let mut outer = (AT_OUTER..).zip(&faces).filter(|(_, f)| self.outer.contains(*f)).map(|(part, _)| part);
+        match (outer.next(), outer.next()) {
+            (None, _) => WITHIN,
+            (Some(part), None) => part,
+            (Some(_), Some(_)) => AT_OUTER + 4,
+        }
     }
 
     /// The port with the place of a face in it, if the face is one of its and the region lies behind it.
@@ -153,15 +163,15 @@ fn faces_of(c: [VertexId; 4]) -> [([usize; 3], [VertexId; 3]); 4] {
     ]
 }
 
-/// The numbers of a cell's lane: coefficients, and terms of boundary faces where its block has such.
+/// The numbers of a cell's lane: coefficients, and conductances where its block has boundary faces.
 pub(super) struct LaneTerms {
     pub(super) coefficients: [f64; 34],
-    pub(super) boundary: [f64; 33],
+    pub(super) conductance: [f64; 21],
 }
 
 impl<'a> Assembly<'a> {
     pub(super) fn new(mesh: &'a TetMesh, settings: &NetworkSettings) -> Result<Self, TlmError> {
-        let NetworkSettings { loads, edge_correction, loss_freq, wave_degrees, .. } = settings;
+        let NetworkSettings { loads, edge_correction, loss_freq, .. } = settings;
         let faces = BoundaryFaces::new(mesh, loads)?;
         let (lo, hi) =
             mesh.vertices.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), &p| (lo.min(p), hi.max(p)));
@@ -175,18 +185,26 @@ impl<'a> Assembly<'a> {
             })
             .collect();
         keyed.par_sort_unstable();
-        let ends = [1, 2].map(|part| keyed.partition_point(|k| k.0 < part));
+        let ends = std::array::from_fn(|part| keyed.partition_point(|k| usize::from(k.0) <= part));
         let cells: Vec<([VertexId; 4], usize)> =
             keyed.into_iter().map(|(_, _, t)| (ascending(mesh.tets[t].vertices), t)).collect();
         let rim = if *edge_correction { sheet_edge::rim(mesh) } else { HashSet::new() };
-        let of_sphere: Vec<[VertexId; 3]> = faces_with(mesh, FaceRole::Outer).collect();
+        Ok(Self { mesh, cells, ends, faces, loads: loads.clone(), rim, loss_freq: *loss_freq })
+    }
+
+    /// The outer boundary with the waves that leave there; `None` if it is no sphere in air, or no waves are wanted.
+    ///
+    /// * `degrees`: of the waves.
+    pub(super) fn outer_sphere(&self, degrees: usize) -> Option<OuterSphere> {
         let is_air = |&(_, tet): &(_, usize)| {
-            let region = mesh.tets[tet].region;
-            (mesh.regions[region.index()].eps_r, loads.mu_r(region)) == (1.0, 1.0)
+            let region = self.mesh.tets[tet].region;
+            (self.mesh.regions[region.index()].eps_r, self.loads.mu_r(region)) == (1.0, 1.0)
         };
-        let sphere = OuterSphere::new(&of_sphere, &mesh.vertices, *wave_degrees);
-        let sphere = sphere.filter(|_| cells[ends[1]..].iter().all(is_air));
-        Ok(Self { mesh, cells, ends, sphere, faces, loads: loads.clone(), rim, loss_freq: *loss_freq })
+        if !self.cells[self.ends[usize::from(AT_PORT)]..].iter().all(is_air) {
+            return None;
+        }
+        let faces: Vec<[VertexId; 3]> = faces_with(self.mesh, FaceRole::Outer).collect();
+        OuterSphere::new(&faces, &self.mesh.vertices, degrees)
     }
 
     /// The mode of the port, if there is one.
@@ -233,34 +251,53 @@ impl<'a> Assembly<'a> {
         TAU * self.loss_freq / C0 * self.mesh.regions[self.region(tet)].tan_delta
     }
 
-    /// What boundary faces add to a cell: conductances of its ports, and how the port drives and reads them.
-    fn boundary_terms(&self, corners: [VertexId; 4], tet: usize) -> (Matrix6<f64>, [f64; 6], [f64; 6]) {
-        let (mut conductance, mut source, mut observation) = (Matrix6::zeros(), [0.0; 6], [0.0; 6]);
+    /// Conductances of a cell's outer faces.
+    fn outer_conductance(&self, corners: [VertexId; 4], tet: usize) -> Matrix6<f64> {
         let region = self.mesh.tets[tet].region;
-        for (places, face) in faces_of(corners) {
-            let mut add = |matrix: &Matrix3<f64>| add_face(&mut conductance, places, matrix);
-            if self.faces.outer.contains(&face) {
-                add(&(self.face_mass(face)
-                    * (self.mesh.regions[region.index()].eps_r / self.loads.mu_r(region)).sqrt()));
-            } else if let Some((port, f)) = self.faces.port_face(face, region.index()) {
-                add(&port.faces[f].conductance);
-                for (a, &place) in places.iter().enumerate() {
-                    source[place] += 2.0 * port.faces[f].mode[a];
-                    observation[place] += port.faces[f].mode[a] / port.admittance;
-                }
-            }
+        let admittance = (self.mesh.regions[region.index()].eps_r / self.loads.mu_r(region)).sqrt();
+        let mut conductance = Matrix6::zeros();
+        for (places, face) in faces_of(corners).into_iter().filter(|(_, face)| self.faces.outer.contains(face)) {
+            add_face(&mut conductance, places, &(self.face_mass(face) * admittance));
         }
-        (conductance, source, observation)
+        conductance
     }
 
-    /// What the waves at the outer sphere see of a cell's ports: `[6, n_waves]`.
+    /// Forms of the waves at the outer sphere for a cell's ports: `[6, n_waves]`.
     pub(super) fn wave_forms(&self, sphere: &OuterSphere, k: usize) -> DMatrix<f64> {
-        let mut forms = DMatrix::zeros(6, sphere.n_waves());
-        for (places, face) in faces_of(self.cells[k].0) {
-            let of_face = sphere.form(&face).into_iter();
-            of_face.flat_map(|form| (0..3).map(move |a| (a, form.row(a)))).for_each(|(a, row)| {
-                let mut sum = forms.row_mut(places[a]);
-                sum += row;
+        self.forms(k, sphere.n_waves(), |face, add| {
+            for (a, row) in sphere.form(&face).into_iter().flat_map(Matrix3xX::row_iter).enumerate() {
+                row.iter().enumerate().for_each(|(m, value)| add(a, m, *value));
+            }
+        })
+    }
+
+    /// Form of the port's mode for a cell's ports: `[6, 1]`.
+    pub(super) fn port_form(&self, k: usize) -> DMatrix<f64> {
+        let region = self.region(self.cells[k].1);
+        self.forms(k, 1, |face, add| {
+            if let Some((port, f)) = self.faces.port_face(face, region) {
+                port.faces[f].form.iter().enumerate().for_each(|(a, value)| add(a, 0, *value));
+            }
+        })
+    }
+
+    /// Forms of modes for a cell's ports: `[6, n_modes]`.
+    ///
+    /// * `of_face`: adds, for a face, the values of its edges (01), (02), (12) and of each mode.
+    fn forms(
+        &self,
+        k: usize,
+        n_modes: usize,
+        of_face: impl Fn([VertexId; 3], &mut dyn FnMut(usize, usize, f64)),
+    ) -> DMatrix<f64> {
+        let (corners, tet) = self.cells[k];
+        let free = self.free(corners, tet);
+        let mut forms = DMatrix::zeros(6, n_modes);
+        for (places, face) in faces_of(corners) {
+            of_face(face, &mut |a, m, value| {
+                if free[places[a]] {
+                    forms[(places[a], m)] += value;
+                }
             });
         }
         forms
@@ -279,12 +316,9 @@ impl<'a> Assembly<'a> {
         // As a share of C/x.
         let kappa = self.conductivity(tet) * x;
         let mut loss = cell.capacitance * (kappa / x);
-        let mut lane = LaneTerms { coefficients: [0.0; 34], boundary: [0.0; 33] };
-        let (mut source, mut observation) = ([0.0; 6], [0.0; 6]);
+        let mut lane = LaneTerms { coefficients: [0.0; 34], conductance: [0.0; 21] };
         if at_boundary {
-            let faces;
-            (faces, source, observation) = self.boundary_terms(corners, tet);
-            loss += faces;
+            loss += self.outer_conductance(corners, tet);
         } else {
             lane.coefficients[LOSS] = kappa / (1.0 + kappa);
         }
@@ -294,12 +328,8 @@ impl<'a> Assembly<'a> {
             for b in 0..=a {
                 lane.coefficients[triangle(a, b)] = c.d[(a, b)];
                 if at_boundary && c.y[a] > 0.0 && c.y[b] > 0.0 {
-                    lane.boundary[triangle(a, b)] = loss[(a, b)];
+                    lane.conductance[triangle(a, b)] = loss[(a, b)];
                 }
-            }
-            if at_boundary && c.y[a] > 0.0 {
-                lane.boundary[SOURCE + a] = source[a];
-                lane.boundary[OBSERVATION + a] = observation[a];
             }
         }
         for (i, j) in (0..3).flat_map(|i| (0..=i).map(move |j| (i, j))) {

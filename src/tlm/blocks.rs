@@ -15,6 +15,7 @@
     reason = "loops over lanes of several arrays at once, which must become vector instructions"
 )]
 
+use super::modes::{BlockForms, FacePorts};
 use super::real::Real;
 use pulp::{Simd, WithSimd};
 
@@ -41,14 +42,10 @@ pub(super) struct Block<T> {
     pub(super) edges: [[u32; LANES]; 6],
 }
 
-/// Where the parts of [`Boundary::terms`] begin: G (21), source (6), observation (6).
-pub(super) const SOURCE: usize = 21;
-pub(super) const OBSERVATION: usize = 27;
-
-/// Boundary faces of a block's cells.
+/// G of a block's cells with boundary faces, by rows of the lower triangle.
 #[derive(Clone, Debug)]
 pub(super) struct Boundary<T> {
-    pub(super) terms: [Lane<T>; 33],
+    pub(super) conductance: [Lane<T>; 21],
 }
 
 /// Where z begins in a [`State`]: T (6), z (3).
@@ -61,38 +58,59 @@ pub(super) type State<T> = [Lane<T>; 9];
 /// connecting reads nothing else.
 pub(super) type Ports<T> = [Lane<T>; 6];
 
-/// What drives the cells of neighboring blocks from outside.
+/// What the outside does to neighboring blocks with boundary faces.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Drive<'a, T> {
-    /// Their boundary faces.
-    pub(super) terms: &'a [Boundary<T>],
-    /// The driving signal of the port.
-    pub(super) signal: T,
-    /// For blocks at the outer sphere: the forms of the waves that leave there, as many for each block as there are
-    /// currents, and these currents.
-    pub(super) waves: Option<(&'a [Ports<T>], &'a [T])>,
+pub(super) struct Outside<'a, T> {
+    pub(super) boundary: &'a [Boundary<T>],
+    /// Forms of the modes, and the currents that flow out through them.
+    pub(super) modes: Option<(&'a [BlockForms<T>], &'a [T])>,
 }
 
-impl<T: Real> Drive<'_, T> {
+impl<T: Real> Outside<'_, T> {
     /// The currents into the ports of a block.
     #[inline(always)]
-    fn source(&self, block: usize) -> Ports<T> {
+    fn source<const FUSED: bool>(&self, block: usize) -> Ports<T> {
         let mut source = [[T::default(); LANES]; 6];
-        for e in 0..6 {
-            for w in 0..LANES {
-                source[e][w] = self.terms[block].terms[SOURCE + e][w] * self.signal;
+        let Some((forms, currents)) = self.modes else { return source };
+        let BlockForms { ports, values } = &forms[block];
+        match ports {
+            FacePorts::Three(ports) => {
+                let of_face = drawn::<T, 3, FUSED>(values, currents);
+                (0..3).for_each(|k| source[ports[k]] = of_face[k]);
             }
-        }
-        if let Some((forms, currents)) = self.waves {
-            for (form, current) in forms[block * currents.len()..].iter().zip(currents) {
-                for e in 0..6 {
-                    for w in 0..LANES {
-                        source[e][w] = multiply_add::<T, false>(-form[e][w], *current, source[e][w]);
-                    }
-                }
-            }
+            FacePorts::Six => source = drawn::<T, 6, FUSED>(values, currents),
         }
         source
+    }
+}
+
+/// What modes draw from the ports of a block.
+///
+/// * `values`: of the forms, N for each mode.
+#[inline(always)]
+fn drawn<T: Real, const N: usize, const FUSED: bool>(values: &[Lane<T>], currents: &[T]) -> [Lane<T>; N] {
+    let mut sum = [[T::default(); LANES]; N];
+    for (form, current) in values.as_chunks::<N>().0.iter().zip(currents) {
+        for e in 0..N {
+            for w in 0..LANES {
+                sum[e][w] = multiply_add::<T, FUSED>(-form[e][w], *current, sum[e][w]);
+            }
+        }
+    }
+    sum
+}
+
+/// Adds to each sum what a mode sees of voltages.
+#[inline(always)]
+fn add_seen<T: Real, const N: usize, const FUSED: bool>(values: &[Lane<T>], v: &[Lane<T>; N], sums: &mut [f64]) {
+    for (form, sum) in values.as_chunks::<N>().0.iter().zip(sums) {
+        let mut seen = [T::default(); LANES];
+        for e in 0..N {
+            for w in 0..LANES {
+                seen[w] = multiply_add::<T, FUSED>(form[e][w], v[e][w], seen[w]);
+            }
+        }
+        *sum += seen.iter().map(|x| x.to_f64()).sum::<f64>();
     }
 }
 
@@ -104,49 +122,49 @@ pub(super) struct Scatter<'a, T> {
     /// Edge voltages, one more than there are edges: the last is zero.
     pub(super) voltages: &'a [T],
     /// For blocks with boundary faces.
-    pub(super) drive: Option<Drive<'a, T>>,
+    pub(super) outside: Option<Outside<'a, T>>,
 }
 
 impl<T: Real> WithSimd for Scatter<'_, T> {
-    /// What the port's observation sees of these blocks.
-    type Output = f64;
+    type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _simd: S) -> f64 {
-        if fuses::<S>() { self.run::<true>() } else { self.run::<false>() }
+    fn with_simd<S: Simd>(self, _simd: S) {
+        if fuses::<S>() {
+            self.run::<true>();
+        } else {
+            self.run::<false>();
+        }
     }
 }
 
 impl<T: Real> Scatter<'_, T> {
     #[inline(always)]
-    fn run<const FUSED: bool>(self) -> f64 {
-        let mut observed = 0.0;
+    fn run<const FUSED: bool>(self) {
         let fields = self.states.iter_mut().zip(self.reflected);
         for (b, (block, (state, reflected))) in self.blocks.iter().zip(fields).enumerate() {
-            let source = self.drive.map(|drive| drive.source(b));
+            let source = self.outside.map(|outside| outside.source::<FUSED>(b));
             let solved = solve::<T, FUSED>(block, state, reflected, self.voltages, source.as_ref());
             update::<T, FUSED>(block, state, reflected, &solved);
-            if let (Some(drive), Some(source)) = (self.drive, source) {
-                observed += add_boundary(&drive.terms[b].terms, state, &solved.v, &source);
+            if let (Some(outside), Some(source)) = (self.outside, source) {
+                add_boundary(&outside.boundary[b].conductance, state, &solved.v, &source);
             }
         }
-        observed
     }
 }
 
-/// What the waves at the outer sphere see before their own currents flow.
+/// What modes of the boundary see before their own currents flow.
 pub(super) struct Observe<'a, T> {
     pub(super) blocks: &'a [Block<T>],
     pub(super) states: &'a [State<T>],
     pub(super) reflected: &'a [Ports<T>],
     pub(super) voltages: &'a [T],
-    /// Forms of the waves, `n_waves` for each block.
-    pub(super) forms: &'a [Ports<T>],
-    pub(super) n_waves: usize,
+    pub(super) forms: &'a [BlockForms<T>],
+    pub(super) n_modes: usize,
 }
 
 impl<T: Real> WithSimd for Observe<'_, T> {
-    /// By wave.
+    /// By mode.
     type Output = Vec<f64>;
 
     #[inline(always)]
@@ -158,19 +176,15 @@ impl<T: Real> WithSimd for Observe<'_, T> {
 impl<T: Real> Observe<'_, T> {
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> Vec<f64> {
-        let mut sums = vec![0.0; self.n_waves];
+        let mut sums = vec![0.0; self.n_modes];
         let fields = self.states.iter().zip(self.reflected);
-        let forms = self.forms.chunks_exact(self.n_waves);
-        for ((block, (state, reflected)), forms) in self.blocks.iter().zip(fields).zip(forms) {
+        for ((block, (state, reflected)), forms) in self.blocks.iter().zip(fields).zip(self.forms) {
             let v = solve::<T, FUSED>(block, state, reflected, self.voltages, None).v;
-            for (sum, form) in sums.iter_mut().zip(forms) {
-                let mut seen = [T::default(); LANES];
-                for e in 0..6 {
-                    for w in 0..LANES {
-                        seen[w] = multiply_add::<T, FUSED>(form[e][w], v[e][w], seen[w]);
-                    }
+            match forms.ports {
+                FacePorts::Three(ports) => {
+                    add_seen::<T, 3, FUSED>(&forms.values, &ports.map(|e| v[e]), &mut sums);
                 }
-                *sum += seen.iter().map(|x| x.to_f64()).sum::<f64>();
+                FacePorts::Six => add_seen::<T, 6, FUSED>(&forms.values, &v, &mut sums),
             }
         }
         sums
@@ -319,21 +333,18 @@ fn update<T: Real, const FUSED: bool>(
     }
 }
 
-/// Adds `J_src - G V` to T; returns the observation of V.
+/// Adds `J_src - G V` to T.
 #[inline(always)]
-fn add_boundary<T: Real>(terms: &[Lane<T>; 33], state: &mut State<T>, v: &Ports<T>, source: &Ports<T>) -> f64 {
-    let mut seen = [T::default(); LANES];
+fn add_boundary<T: Real>(conductance: &[Lane<T>; 21], state: &mut State<T>, v: &Ports<T>, source: &Ports<T>) {
     for a in 0..6 {
         let mut sum = [T::default(); LANES];
         for b in 0..6 {
             for w in 0..LANES {
-                sum[w] += terms[triangle(a, b)][w] * v[b][w];
+                sum[w] += conductance[triangle(a, b)][w] * v[b][w];
             }
         }
         for w in 0..LANES {
             state[a][w] += source[a][w] - sum[w];
-            seen[w] += terms[OBSERVATION + a][w] * v[a][w];
         }
     }
-    seen.iter().map(|x| x.to_f64()).sum()
 }

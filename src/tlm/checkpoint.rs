@@ -34,9 +34,10 @@ impl Network<f32> {
         }
         let mut lane = |lane: &Lane<f32>| hash.update(lane.map(f32::to_le_bytes).as_flattened());
         self.blocks.iter().flat_map(|b| &b.coefficients).for_each(&mut lane);
-        self.boundary.iter().flat_map(|b| &b.terms).for_each(&mut lane);
-        let forms = self.outgoing.iter().flat_map(|outgoing| outgoing.forms.as_flattened());
-        forms.for_each(&mut lane);
+        self.boundary.iter().flat_map(|b| &b.conductance).for_each(&mut lane);
+        let modes =
+            self.outgoing.iter().map(|outgoing| &outgoing.modes).chain(self.line.iter().map(|line| &line.modes));
+        modes.flat_map(|modes| &modes.forms).flat_map(|forms| &forms.values).for_each(&mut lane);
         self.weights.iter().for_each(|weight| hash.update(weight.to_le_bytes()));
         for edges in self.blocks.iter().flat_map(|b| &b.edges) {
             hash.update(edges.map(u32::to_le_bytes).as_flattened());

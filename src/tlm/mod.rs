@@ -21,6 +21,7 @@ mod checkpoint;
 mod error;
 mod huygens;
 mod loads;
+mod modes;
 mod network;
 mod outgoing;
 mod port;
@@ -32,6 +33,8 @@ mod slots;
 mod source;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_cavity;
 
 pub use checkpoint::Checkpoint;
 pub use error::TlmError;
@@ -44,4 +47,4 @@ pub use run::{Record, Run};
 pub use source::Pulse;
 
 /// Goes up when the same mesh and settings give another result, so that results kept from before are known as such.
-pub const SOLVER_VERSION: u32 = 2;
+pub const SOLVER_VERSION: u32 = 3;

@@ -5,7 +5,9 @@ use super::assembly::{Assembly, ascending};
 use super::blocks::{Block, Boundary, LANES, Ports, State};
 use super::cell::{Cell, EDGES, MARGIN};
 use super::loads::Loads;
-use super::outgoing::Outgoing;
+use super::modes::Modes;
+use super::outgoing::{OuterSphere, Outgoing};
+use super::port::{LineEnd, PortMode};
 use super::real::Real;
 use super::slots::{Chunk, Slots};
 use crate::geometry::VertexId;
@@ -67,10 +69,10 @@ pub struct Network<T> {
     /// Terms of the last blocks, which hold all cells with boundary faces.
     pub(super) boundary: Vec<Boundary<T>>,
     pub(super) chunks: Vec<Chunk>,
-    /// Blocks from this one on lie at the outer sphere.
-    pub(super) first_outer: usize,
-    /// The waves that leave there.
+    /// The waves that leave at the outer sphere.
     pub(super) outgoing: Option<Outgoing<T>>,
+    /// The line behind the port.
+    pub(super) line: Option<LineEnd<T>>,
     pub(super) n_edges: usize,
     /// For each edge where its ports' reflected currents are among those of all blocks, from `starts[e]` to `starts[e + 1]`.
     pub(super) starts: Vec<u32>,
@@ -120,15 +122,20 @@ impl<T: Real> Network<T> {
         let slots = Slots::new(&assembly);
         let filled = slots.fill(&assembly, x);
         let (starts, places, weights) = slots.connect(&filled.0, &assembly);
-        let first_outer = slots.ends[1];
-        let outgoing = |sphere| {
-            let forms = slots.wave_forms(&assembly, sphere);
-            Outgoing::new(sphere, &filled.0[first_outer..], forms, x)
+        let [first, last] = slots.ends;
+        let outgoing = |sphere: OuterSphere| {
+            let of_cell = |k| assembly.wave_forms(&sphere, k);
+            let modes = Modes::new(&filled.0, &slots, last..filled.0.len(), sphere.n_waves(), of_cell);
+            Outgoing::new(&sphere, modes, x)
         };
-        let outgoing = assembly.sphere.as_ref().map(outgoing);
+        let outgoing = assembly.outer_sphere(settings.wave_degrees).map(outgoing);
+        let line = |mode: &PortMode| LineEnd {
+            modes: Modes::new(&filled.0, &slots, first..last, 1, |k| assembly.port_form(k)),
+            admittance: mode.admittance,
+        };
+        let line = assembly.port().map(line);
         phase.advance(1);
         Ok(Self {
-            first_outer,
             outgoing,
             blocks: filled.0,
             boundary: filled.1,
@@ -137,13 +144,14 @@ impl<T: Real> Network<T> {
             starts,
             places,
             weights,
+            port_impedance: line.as_ref().map(|line| ETA0 / line.admittance),
             tets: slots.tets(&assembly),
             lossy: slots.lossy(&assembly),
             resistors: slots.resistors(&assembly),
             n_tets: mesh.tets.len(),
             dt: 2.0 * x / C0,
-            port_impedance: assembly.port().map(|mode| ETA0 / mode.admittance),
             n_clipped,
+            line,
         })
     }
 
@@ -164,7 +172,7 @@ impl<T: Real> Network<T> {
     pub fn traffic(&self) -> f64 {
         let block = size_of::<Block<T>>() + 2 * size_of::<State<T>>() + 2 * size_of::<Ports<T>>();
         let list = size_of_val(&self.places[..]) + size_of_val(&self.starts[..]) + size_of_val(&self.weights[..]);
-        let waves = self.outgoing.as_ref().map_or(0, |o| 2 * size_of_val(&o.forms[..]));
+        let waves = self.outgoing.as_ref().map_or(0, |outgoing| 2 * outgoing.modes.size());
         let total = waves
             + block * self.blocks.len()
             + size_of_val(&self.boundary[..])

@@ -6,23 +6,19 @@
 //! it as a ladder: with `F_l = 1/p + 1` and `F_k = a_k/p + 1/F_(k+1)`, `a = l, 2l-1, 2l-3, .., 3, 1`, the admittance is
 //! `F_0` for waves with a magnetic field along the radius (TE) and `1/F_0` for those with an electric one (TM).
 //!
-//! Let G be the mass matrix of the boundary's edges and `g = G e` for tangential fields e of those waves, orthonormal
-//! in G. The boundary's admittance is `G - Σ g g^T + Σ g F g^T`: the first two terms are not negative, since `Σ g g^T`
-//! projects, and F is passive and stays so under the trapezoidal rule. So the proof of stability holds as before.
-//!
-//! All waves see the voltages of one time level, so the currents of all depend on each other. With M the cells' response
-//! `V = M J` and `S = g^T M g`, currents `(F - 1) v` change the waves' voltages by `-S (F - 1) v`: one small system. A
-//! step first finds the voltages without these currents, then scatters with them.
+//! The waves are modes of the boundary (see [`super::modes`]), orthonormal in its mass matrix G. Its admittance is
+//! `G - Σ g g^T + Σ g F g^T`: the first two terms are not negative, since `Σ g g^T` projects, and F is passive and stays so
+//! under the trapezoidal rule. So the proof of stability holds as before.
 //!
 //! Not handled: matter other than air at the sphere.
 //!
 //! Sources: \[CHU48\]; vector spherical waves as in \[HAR61\].
 
-use super::blocks::{A_INVERSE, Block, LANES, Lane, triangle};
-use super::cell::{circulations, face_mass};
+use super::cell::face_mass;
+use super::modes::Modes;
 use super::real::Real;
 use crate::geometry::{DVec3, VertexId};
-use nalgebra::{DMatrix, DVector, Matrix3, Matrix3xX, Matrix4, Matrix6, RowDVector, Vector4, Vector6};
+use nalgebra::{DMatrix, DVector, Matrix3, Matrix3xX, Matrix4, RowDVector, Vector4};
 use std::collections::HashMap;
 
 /// Whether the electric or the magnetic field is across the radius.
@@ -218,41 +214,22 @@ fn sphere_through(faces: &[[VertexId; 3]], points: &[DVec3]) -> Option<(DVec3, f
 /// The waves' circuits at a mesh's outer sphere: fixed once built.
 #[derive(Clone, Debug)]
 pub(super) struct Outgoing<T> {
-    /// `g` of the ports of the blocks at the sphere: `n_waves` for each block.
-    pub(super) forms: Vec<[Lane<T>; 6]>,
+    pub(super) modes: Modes<T>,
     /// One for each wave.
     ladders: Vec<Ladder>,
     /// From the voltages without the waves' currents, less `S` times what the circuits still give, to the true ones.
     solve: DMatrix<f64>,
-    /// `S = g^T M g`
-    coupling: DMatrix<f64>,
 }
 
 impl<T: Real> Outgoing<T> {
-    /// * `blocks`: those at the sphere; `forms`: `g` of their ports; `x`: half a time step, m.
-    pub(super) fn new(sphere: &OuterSphere, blocks: &[Block<T>], forms: Vec<[Lane<T>; 6]>, x: f64) -> Self {
+    /// * `modes`: of the sphere's waves; `x`: half a time step, m.
+    pub(super) fn new(sphere: &OuterSphere, modes: Modes<T>, x: f64) -> Self {
         let step = 2.0 * x / sphere.radius;
         let n = sphere.n_waves();
-        let mut coupling = DMatrix::<f64>::zeros(n, n);
-        for (block, forms) in blocks.iter().zip(forms.chunks_exact(n)) {
-            for w in 0..LANES {
-                let columns: Vec<Vector6<f64>> =
-                    forms.iter().map(|form| Vector6::from_fn(|e, _| form[e][w].to_f64())).collect();
-                let response = response(block, w);
-                for (j, column) in columns.iter().enumerate() {
-                    let seen = response * column;
-                    columns.iter().enumerate().for_each(|(i, row)| coupling[(i, j)] += row.dot(&seen));
-                }
-            }
-        }
         let ladders: Vec<Ladder> = sphere.waves.iter().map(|wave| Ladder::new(wave.kind, wave.degree, step)).collect();
         let more = DMatrix::<f64>::from_diagonal(&DVector::from_iterator(n, ladders.iter().map(|l| l.y - 1.0)));
-        let solve = (DMatrix::<f64>::identity(n, n) + &coupling * more).try_inverse().expect("a passive system");
-        Self { forms, ladders, solve, coupling }
-    }
-
-    pub(super) fn n_waves(&self) -> usize {
-        self.ladders.len()
+        let solve = (DMatrix::<f64>::identity(n, n) + &modes.coupling * more).try_inverse().expect("a passive system");
+        Self { modes, ladders, solve }
     }
 
     /// The states of all circuits before any field.
@@ -272,7 +249,7 @@ impl<T: Real> Outgoing<T> {
             .collect();
         let given = self.ladders.iter().zip(&of_each).map(|(ladder, state)| dot(ladder.out.iter(), state));
         let given = DVector::from_iterator(seen.len(), given);
-        let voltages = &self.solve * (DVector::from_column_slice(seen) - &self.coupling * &given);
+        let voltages = &self.solve * (DVector::from_column_slice(seen) - &self.modes.coupling * &given);
         for ((ladder, state), v) in self.ladders.iter().zip(of_each).zip(voltages.iter()) {
             let next: Vec<f64> =
                 (0..state.len()).map(|k| dot(ladder.next.row(k).iter(), state) + ladder.drive[k] * v).collect();
@@ -289,15 +266,6 @@ impl<T: Real> Outgoing<T> {
 
 fn dot<'a>(a: impl Iterator<Item = &'a f64>, b: &[f64]) -> f64 {
     a.zip(b).map(|(a, b)| a * b).sum()
-}
-
-/// `M = D - D K^T A^-1 K D` of a lane: the voltages of its ports for currents into them.
-fn response<T: Real>(block: &Block<T>, w: usize) -> Matrix6<f64> {
-    let at = |place: usize| block.coefficients[place][w].to_f64();
-    let d = Matrix6::from_fn(|i, j| at(triangle(i, j)));
-    let a_inverse = Matrix3::from_fn(|i, j| at(A_INVERSE + triangle(i, j)));
-    let kd = circulations() * d;
-    d - kd.transpose() * a_inverse * kd
 }
 
 #[cfg(test)]

@@ -1,23 +1,27 @@
 //! A coaxial line's end: its static mode, and what drives and reads it.
 //!
 //! The mode is the gradient of the potential that is 1 on the inner conductor and 0 on the outer one (two-dimensional
-//! Laplace on the port's triangles). With its edge values e0 and the face mass G, `1/Z0 = e0^T (Y G) e0`; the current
-//! `J = 2 Y G e0 v_inc` drives it, and `v = e0^T (Y G) V / (e0^T (Y G) e0)` reads it.
+//! Laplace on the port's triangles). With its edge values e0 and the face mass G, `1/Z0 = e0^T (Y G) e0`; it is a mode of
+//! the port (see [`super::modes`]) with the form `g = Y G e0`, and `v = g^T V Z0` reads it.
+//!
+//! The line goes on behind the port for this mode alone: what flows into it is `g (2 v_inc - v)`. All other fields meet an
+//! open end there. In the line they do not propagate, so they take no power with them, as they would take none in truth; a
+//! resistance for all fields would take some.
 
 use super::TlmError;
 use super::cell::face_mass;
+use super::modes::Modes;
+use super::real::Real;
 use crate::geometry::{DVec3, VertexId};
-use nalgebra::{DMatrix, DVector, Matrix3};
+use nalgebra::{DMatrix, DVector};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// One face of the port with what it adds to its cell; edges (01), (02), (12) of its ascending vertices.
 #[derive(Clone, Debug)]
 pub(super) struct PortFace {
     pub(super) vertices: [VertexId; 3],
-    /// `Y G`, in units of the free-space admittance.
-    pub(super) conductance: Matrix3<f64>,
-    /// `Y G e0`
-    pub(super) mode: [f64; 3],
+    /// `Y G e0`, in units of the free-space admittance.
+    pub(super) form: [f64; 3],
 }
 
 /// A port ready to be driven.
@@ -58,12 +62,30 @@ impl PortMode {
         for (face, (mass, ..)) in faces.iter().zip(&masses) {
             let at = |v: VertexId| potential[number[&v]];
             let e0 = nalgebra::Vector3::from([(0, 1), (0, 2), (1, 2)].map(|(i, j)| at(face[i]) - at(face[j])));
-            let conductance = mass * root_eps;
-            let mode = conductance * e0;
-            port.admittance += e0.dot(&mode);
-            port.faces.push(PortFace { vertices: *face, conductance, mode: mode.into() });
+            let form = mass * e0 * root_eps;
+            port.admittance += e0.dot(&form);
+            port.faces.push(PortFace { vertices: *face, form: form.into() });
         }
         Ok(port)
+    }
+}
+
+/// The line behind the port: fixed once built.
+#[derive(Clone, Debug)]
+pub(super) struct LineEnd<T> {
+    pub(super) modes: Modes<T>,
+    /// Of the mode, in units of the free-space admittance.
+    pub(super) admittance: f64,
+}
+
+impl<T: Real> LineEnd<T> {
+    /// The total voltage of the mode, and the current that flows out of the cells.
+    ///
+    /// * `seen`: `g^T V` without this current; `incident`: voltage of the wave that arrives.
+    pub(super) fn step(&self, seen: f64, incident: f64) -> (f64, f64) {
+        let s = self.modes.coupling[(0, 0)];
+        let total = (seen + 2.0 * s * incident) / (self.admittance + s);
+        (total, total - 2.0 * incident)
     }
 }
 

@@ -1,12 +1,13 @@
 //! The field in time: scatter, connect, drive and read the port.
 
-use super::blocks::{Drive, LANES, Observe, Ports, Scatter, State};
+use super::blocks::{LANES, Observe, Outside, Ports, Scatter, State};
+use super::modes::Modes;
 use super::outgoing::Outgoing;
+use super::slots::Chunk;
 use super::{FieldRecorder, Network, Pulse, Real, TlmError};
 use crate::task::Task;
 use crate::units::ETA0;
 use rayon::prelude::*;
-use std::ops::Range;
 use std::time::Instant;
 
 /// Edges of several chunks that one thread takes at a time.
@@ -194,7 +195,11 @@ impl<'a, T: Real> Run<'a, T> {
         let at = |step: f64| self.pulse.at(step * self.network.dt);
         let incident = if self.impressed.is_none() { at(step as f64) } else { 0.0 };
         let later = at(step as f64 + 0.5);
-        let mut seen = [incident, self.scatter(T::new(incident))];
+        let arch = pulp::Arch::new();
+        let (total, into_line) = self.meet_line(arch, incident);
+        let mut seen = [incident, total];
+        let leaving = self.leave(arch);
+        self.scatter(arch, into_line, &leaving);
         self.connect_shared();
         std::mem::swap(&mut self.voltages, &mut self.next);
         if let Some(Impressed { edges, per_volt, is_port }) = &self.impressed {
@@ -217,11 +222,11 @@ impl<'a, T: Real> Run<'a, T> {
         self.record.total.push(total);
     }
 
-    /// All cells, and the edges that only one chunk has; returns the total voltage at the port.
-    fn scatter(&mut self, signal: T) -> f64 {
-        let arch = pulp::Arch::new();
+    /// All cells, and the edges that only one chunk has.
+    ///
+    /// * `into_line`: current into the line behind the port; `leaving`: currents of the waves at the outer sphere.
+    fn scatter(&mut self, arch: pulp::Arch, into_line: T, leaving: &[T]) {
         let network = self.network;
-        let currents = self.leave(arch);
         let n_inner = network.blocks.len() - network.boundary.len();
         let voltages = &self.voltages[..];
         let (mut states, mut reflected, mut next) = (&mut self.states[..], &mut self.reflected[..], &mut self.next[..]);
@@ -234,43 +239,57 @@ impl<'a, T: Real> Run<'a, T> {
                 next.split_off_mut(..chunk.edges.len()).expect("edges of chunks come first"),
             ));
         }
-        let seen = parts.into_par_iter().map(|(chunk, states, reflected, next)| {
+        let into_line = [into_line];
+        parts.into_par_iter().for_each(|(chunk, states, reflected, next)| {
             let blocks = &network.blocks[chunk.blocks.clone()];
-            let drive = (chunk.blocks.start >= n_inner).then(|| Drive {
-                terms: &network.boundary[chunk.blocks.start - n_inner..chunk.blocks.end - n_inner],
-                signal,
-                waves: network.forms(&chunk.blocks).map(|forms| (forms, &currents[..])),
+            let waves =
+                network.outgoing.as_ref().and_then(|outgoing| Some((outgoing.modes.at(&chunk.blocks)?, leaving)));
+            let port = || Some((network.line.as_ref()?.modes.at(&chunk.blocks)?, &into_line[..]));
+            let outside = (chunk.blocks.start >= n_inner).then(|| Outside {
+                boundary: &network.boundary[chunk.blocks.start - n_inner..chunk.blocks.end - n_inner],
+                modes: waves.or_else(port),
             });
-            let seen = arch.dispatch(Scatter { blocks, states, reflected, voltages, drive });
+            arch.dispatch(Scatter { blocks, states, reflected, voltages, outside });
             let reflected = reflected.as_flattened().as_flattened();
             network.connect(chunk.edges.start, next, reflected, chunk.blocks.start * 6 * LANES);
-            seen
         });
-        // Summed in the order of the chunks, whichever thread was first.
-        seen.collect::<Vec<f64>>().iter().sum()
     }
 
     /// The currents of the waves at the outer sphere, whose circuits go on by a step.
     fn leave(&mut self, arch: pulp::Arch) -> Vec<T> {
         let network = self.network;
         let Some(outgoing) = &network.outgoing else { return Vec::new() };
-        let seen = network.chunks.par_iter().filter_map(|chunk| {
+        let seen = self.seen(arch, &outgoing.modes);
+        outgoing.step(&seen, &mut self.waves).into_iter().map(T::new).collect()
+    }
+
+    /// The total voltage at the port, and the current into the line behind it.
+    fn meet_line(&self, arch: pulp::Arch, incident: f64) -> (f64, T) {
+        let Some(line) = &self.network.line else { return (0.0, T::default()) };
+        let (total, current) = line.step(self.seen(arch, &line.modes)[0], incident);
+        (total, T::new(current))
+    }
+
+    /// Voltages of modes before their own currents flow.
+    fn seen(&self, arch: pulp::Arch, modes: &Modes<T>) -> Vec<f64> {
+        let network = self.network;
+        let of_chunk = |chunk: &Chunk| {
             let range = chunk.blocks.clone();
             Some(arch.dispatch(Observe {
-                forms: network.forms(&range)?,
+                forms: modes.at(&range)?,
                 blocks: &network.blocks[range.clone()],
                 states: &self.states[range.clone()],
                 reflected: &self.reflected[range],
                 voltages: &self.voltages,
-                n_waves: outgoing.n_waves(),
+                n_modes: modes.n_modes,
             }))
-        });
-        // Summed in the order of the chunks.
-        let mut sums = vec![0.0; outgoing.n_waves()];
-        for seen in seen.collect::<Vec<_>>() {
+        };
+        // Summed in the order of the chunks, whichever thread was first.
+        let mut sums = vec![0.0; modes.n_modes];
+        for seen in network.chunks.par_iter().filter_map(of_chunk).collect::<Vec<_>>() {
             sums.iter_mut().zip(seen).for_each(|(sum, seen)| *sum += seen);
         }
-        outgoing.step(&sums, &mut self.waves).into_iter().map(T::new).collect()
+        sums
     }
 
     /// The edges of several chunks.
@@ -284,13 +303,6 @@ impl<'a, T: Real> Run<'a, T> {
 }
 
 impl<T: Real> Network<T> {
-    /// Forms of the waves for blocks at the outer sphere.
-    fn forms(&self, blocks: &Range<usize>) -> Option<&[Ports<T>]> {
-        let outgoing = self.outgoing.as_ref().filter(|_| blocks.start >= self.first_outer)?;
-        let places = [blocks.start, blocks.end].map(|b| (b - self.first_outer) * outgoing.n_waves());
-        Some(&outgoing.forms[places[0]..places[1]])
-    }
-
     /// Voltages of some edges, from what their cells reflect.
     ///
     /// * `first`: number of the first edge; `offset`: place of the first of the reflected currents among all.

@@ -3,11 +3,10 @@
 //! A chunk is what one thread works on at a time: it scatters in its blocks and at once connects the edges that no other
 //! chunk has, while what its cells reflect is still in the cache. Edges of several chunks come last.
 
-use super::assembly::Assembly;
-use super::blocks::{ADMITTANCE, Block, Boundary, LANES, Ports};
+use super::assembly::{Assembly, N_PARTS};
+use super::blocks::{ADMITTANCE, Block, Boundary, LANES};
 use super::cell::EDGES;
 use super::network::Lossy;
-use super::outgoing::OuterSphere;
 use super::real::Real;
 use crate::geometry::VertexId;
 use rayon::prelude::*;
@@ -33,7 +32,7 @@ pub(super) struct Slots {
     pub(super) n_edges: usize,
     /// Ends of each edge, ascending.
     pub(super) edge_ends: Vec<[VertexId; 2]>,
-    /// Blocks before the first of these have no boundary faces, those from the second on lie at the outer sphere.
+    /// Blocks before the first of these have no boundary faces, those from the second on lie at the outer boundary.
     pub(super) ends: [usize; 2],
     pub(super) chunks: Vec<Chunk>,
 }
@@ -69,15 +68,15 @@ fn chunks(edges: &[[u32; 6]], ends: [usize; 2], n_edges: usize) -> (Vec<Chunk>, 
 impl Slots {
     pub(super) fn new(assembly: &Assembly<'_>) -> Self {
         let n = assembly.cells.len();
-        let mut cells: Vec<Option<usize>> = Vec::with_capacity(n + 3 * LANES);
-        let mut fill_up = |from: usize, to: usize| {
+        let mut cells: Vec<Option<usize>> = Vec::with_capacity(n + N_PARTS * LANES);
+        let mut from = 0;
+        let of_parts = assembly.ends.map(|to| {
             cells.extend((from..to).map(Some));
             cells.resize(cells.len().next_multiple_of(LANES), None);
+            from = to;
             cells.len() / LANES
-        };
-        let [inner, rest] = assembly.ends;
-        let ends = [fill_up(0, inner), fill_up(inner, rest)];
-        fill_up(rest, n);
+        });
+        let ends = [of_parts[0], of_parts[1]];
         // Edges by first touch: what a block needs lies close together.
         let mut number: HashMap<[VertexId; 2], u32> = HashMap::with_capacity(2 * n);
         let mut edges = Vec::with_capacity(cells.len());
@@ -131,36 +130,20 @@ impl Slots {
         let lanes = self.cells.par_chunks(LANES).zip(self.edges.par_chunks(LANES)).enumerate();
         let blocks = lanes.map(|(b, (cells, edges))| {
             let mut block = Block { coefficients: [[T::default(); LANES]; 34], edges: [[0; LANES]; 6] };
-            let mut boundary = (b >= self.ends[0]).then(|| Boundary { terms: [[T::default(); LANES]; 33] });
+            let mut boundary = (b >= self.ends[0]).then(|| Boundary { conductance: [[T::default(); LANES]; 21] });
             for (w, (cell, ports)) in cells.iter().zip(edges).enumerate() {
                 (0..6).for_each(|e| block.edges[e][w] = ports[e]);
                 if let Some(k) = *cell {
                     let terms = assembly.terms(k, x, boundary.is_some());
                     block.coefficients.iter_mut().zip(terms.coefficients).for_each(|(lane, c)| lane[w] = T::new(c));
-                    let lanes = boundary.iter_mut().flat_map(|b| &mut b.terms);
-                    lanes.zip(terms.boundary).for_each(|(lane, c)| lane[w] = T::new(c));
+                    let lanes = boundary.iter_mut().flat_map(|b| &mut b.conductance);
+                    lanes.zip(terms.conductance).for_each(|(lane, c)| lane[w] = T::new(c));
                 }
             }
             (block, boundary)
         });
         let (blocks, boundary): (Vec<Block<T>>, Vec<Option<Boundary<T>>>) = blocks.unzip();
         (blocks, boundary.into_iter().flatten().collect())
-    }
-
-    /// What the waves at the outer sphere see of the blocks there, wave by wave for each block.
-    pub(super) fn wave_forms<T: Real>(&self, assembly: &Assembly<'_>, sphere: &OuterSphere) -> Vec<Ports<T>> {
-        let n = sphere.n_waves();
-        let of_block = |cells: &[Option<usize>]| {
-            let mut forms = vec![[[T::default(); LANES]; 6]; n];
-            for (w, k) in cells.iter().enumerate().filter_map(|(w, k)| Some((w, (*k)?))) {
-                let of_cell = assembly.wave_forms(sphere, k);
-                (0..n)
-                    .flat_map(|m| (0..6).map(move |e| (m, e)))
-                    .for_each(|(m, e)| forms[m][e][w] = T::new(of_cell[(e, m)]));
-            }
-            forms
-        };
-        self.cells[self.ends[1] * LANES..].par_chunks(LANES).flat_map_iter(of_block).collect()
     }
 
     /// For each edge its ports' places in the state, and `2 / (sum Y + conductance of resistors)`.

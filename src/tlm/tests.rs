@@ -1,10 +1,11 @@
-//! Whole meshes against closed forms: cavities, the energy of a closed box, the edge of a sheet.
+//! Whole meshes against closed forms: the energy of a closed box, the edge of a sheet, losses.
 
 use super::assembly::Assembly;
 use super::blocks::{FLUX, LANES};
 use super::cell::EDGES;
 use super::loads::Loads;
 use super::slots::Slots;
+use super::tests_cavity::cavity_mode;
 use super::{Network, NetworkSettings, Pulse, Real, Run};
 use crate::geometry::{DQuat, DVec3, Region, RegionId, RegionRole, VertexId};
 use crate::task::Task;
@@ -61,7 +62,7 @@ impl Quads {
 }
 
 /// The box from the origin to `size`, of layers along z of equal thickness, with conducting walls.
-fn layered_box(size: DVec3, eps_r: &[f64], h: f64) -> TetMesh {
+pub(super) fn layered_box(size: DVec3, eps_r: &[f64], h: f64) -> TetMesh {
     divided_box(size, eps_r, h, None)
 }
 
@@ -100,7 +101,7 @@ fn divided_box(size: DVec3, eps_r: &[f64], h: f64, divider: Option<usize>) -> Te
 }
 
 /// A closed mesh with the places of its lanes.
-struct Closed<'a, T> {
+pub(super) struct Closed<'a, T> {
     mesh: &'a TetMesh,
     assembly: Assembly<'a>,
     slots: Slots,
@@ -108,7 +109,7 @@ struct Closed<'a, T> {
 }
 
 impl<'a, T: Real> Closed<'a, T> {
-    fn new(mesh: &'a TetMesh, edge_correction: bool) -> Self {
+    pub(super) fn new(mesh: &'a TetMesh, edge_correction: bool) -> Self {
         Self::loaded(mesh, edge_correction, Loads::default())
     }
 
@@ -156,7 +157,7 @@ impl<'a, T: Real> Closed<'a, T> {
     /// Frequency (as a wave number, 1/m) of the mode that a field begins with.
     ///
     /// The record is the projection onto that field, windowed; its spectrum's peak is searched around `guess`.
-    fn wave_number(&self, field: impl Fn(DVec3) -> DVec3, guess: f64) -> f64 {
+    pub(super) fn wave_number(&self, field: impl Fn(DVec3) -> DVec3, guess: f64) -> f64 {
         const PERIODS: f64 = 12.0;
         let voltages = self.along_edges(field);
         let mut run = self.start(&voltages);
@@ -186,7 +187,7 @@ impl<'a, T: Real> Closed<'a, T> {
 }
 
 /// Least-squares slope of log error over log h.
-fn order(errors: &[(f64, f64)]) -> f64 {
+pub(super) fn order(errors: &[(f64, f64)]) -> f64 {
     let points: Vec<(f64, f64)> = errors.iter().map(|(h, e)| (h.ln(), e.abs().ln())).collect();
     let n = points.len() as f64;
     let (x, y) = points.iter().fold((0.0, 0.0), |(x, y), p| (x + p.0 / n, y + p.1 / n));
@@ -194,11 +195,10 @@ fn order(errors: &[(f64, f64)]) -> f64 {
     slope / points.iter().map(|p| (p.0 - x).powi(2)).sum::<f64>()
 }
 
-const CAVITY: DVec3 = DVec3::new(1.0, 0.9, 0.7);
-const SIZES: [f64; 5] = [0.155, 0.128, 0.106, 0.088, 0.072];
+pub(super) const CAVITY: DVec3 = DVec3::new(1.0, 0.9, 0.7);
 
 /// Mean edge length of a mesh, m.
-fn mean_edge(mesh: &TetMesh) -> f64 {
+pub(super) fn mean_edge(mesh: &TetMesh) -> f64 {
     let edges: std::collections::BTreeSet<[VertexId; 2]> = mesh
         .tets
         .iter()
@@ -206,88 +206,6 @@ fn mean_edge(mesh: &TetMesh) -> f64 {
         .collect();
     let length = |[a, b]: &[VertexId; 2]| mesh.vertices[a.index()].distance(mesh.vertices[b.index()]);
     edges.iter().map(length).sum::<f64>() / edges.len() as f64
-}
-
-/// Orders that count as the second: on our regular cells the leading term nearly cancels, and what is left falls faster.
-const SECOND: std::ops::Range<f64> = 1.8..2.8;
-
-/// Greatest error of a resonance in units of (k h)² that Whitney functions on good meshes have shown elsewhere.
-const SECOND_ORDER: f64 = 0.013;
-
-/// Fields of the modes 110, 101 and 011 of the cavity.
-fn cavity_mode(mode: usize, p: DVec3) -> DVec3 {
-    let k = DVec3::new(PI, PI, PI) / CAVITY;
-    let sin = (k * p).map(f64::sin);
-    match mode {
-        0 => DVec3::Z * sin.x * sin.y,
-        1 => DVec3::Y * sin.x * sin.z,
-        _ => DVec3::X * sin.y * sin.z,
-    }
-}
-
-#[test]
-fn resonances_of_a_cavity_are_of_second_order() {
-    let k = DVec3::new(PI, PI, PI) / CAVITY;
-    let exact = [k.with_z(0.0), k.with_y(0.0), k.with_x(0.0)].map(DVec3::length);
-    let of_size = |size: f64| {
-        let mesh = layered_box(CAVITY, &[1.0], size);
-        let h = mean_edge(&mesh);
-        let closed = Closed::<f64>::new(&mesh, true);
-        let errors = [0, 1, 2].map(|m| closed.wave_number(|p| cavity_mode(m, p), exact[m]) / exact[m] - 1.0);
-        for (error, k) in errors.iter().zip(exact) {
-            assert!(error.abs() < SECOND_ORDER * (k * h).powi(2), "h {h}: {error:e} at {k}");
-        }
-        (h, (errors.iter().map(|e| e * e).sum::<f64>() / 3.0).sqrt())
-    };
-    let errors = SIZES.map(of_size);
-    assert!(SECOND.contains(&order(&errors)), "order {}: {errors:?}", order(&errors));
-}
-
-/// Wave number of the lowest mode of the cavity whose lower half is filled, and the axial ones in both halves: the root
-/// of `k1 tan(k1 d) / eps_r = q tanh(q d)`.
-fn half_filled(eps_r: f64) -> (f64, f64, f64) {
-    let d = CAVITY.z / 2.0;
-    let across = (PI / CAVITY.x).powi(2) + (PI / CAVITY.y).powi(2);
-    let parts = |k: f64| ((eps_r * k * k - across).max(0.0).sqrt(), (across - k * k).max(0.0).sqrt());
-    let (mut lo, mut hi) = ((across / eps_r).sqrt(), across.sqrt());
-    while hi - lo > 1e-14 * hi {
-        let k = (lo + hi) / 2.0;
-        let (k1, q) = parts(k);
-        if k1 * (k1 * d).tan() / eps_r < q * (q * d).tanh() { lo = k } else { hi = k }
-    }
-    let (k1, q) = parts(lo);
-    (lo, k1, q)
-}
-
-#[test]
-fn a_half_filled_cavity_is_of_second_order_too() {
-    const EPS_R: f64 = 2.2;
-    let (exact, k1, q) = half_filled(EPS_R);
-    let d = CAVITY.z / 2.0;
-    let k = DVec3::new(PI, PI, 0.0) / CAVITY;
-    // E = curl curl (z psi) / eps, with psi = sin sin phi(z).
-    let field = |p: DVec3| {
-        let (phi, slope, eps_r) = if p.z < d {
-            let scale = (k1 * d).cos();
-            ((k1 * p.z).cos() / scale, -k1 * (k1 * p.z).sin() / scale, EPS_R)
-        } else {
-            let (scale, z) = ((q * d).cosh(), CAVITY.z - p.z);
-            ((q * z).cosh() / scale, -q * (q * z).sinh() / scale, 1.0)
-        };
-        let (sin, cos) = ((k * p).map(f64::sin), (k * p).map(f64::cos));
-        let along = k.x * cos.x * sin.y * slope;
-        DVec3::new(along, k.y * sin.x * cos.y * slope, k.length_squared() * sin.x * sin.y * phi) / eps_r
-    };
-    let of_size = |size: f64| {
-        let mesh = layered_box(CAVITY, &[EPS_R, 1.0], size);
-        let h = mean_edge(&mesh);
-        let error = Closed::<f64>::new(&mesh, true).wave_number(field, exact) / exact - 1.0;
-        // The wave is shorter in the filled half.
-        assert!(error.abs() < SECOND_ORDER * EPS_R * (exact * h).powi(2), "h {h}: {error:e}");
-        (h, error)
-    };
-    let errors = SIZES.map(of_size);
-    assert!(SECOND.contains(&order(&errors)), "order {}: {errors:?}", order(&errors));
 }
 
 /// A cylinder of radius 1 with a conducting sheet from its axis to its wall, between conducting lids.

@@ -46,7 +46,7 @@ fn assert_patterns(report: &Value, bench: &Bench) {
     // The loss tangent times the unloaded quality factor, about 8, is lost under the patch: 0.7 %; a little in the line.
     assert!((0.985..0.995).contains(&number("efficiency")), "{report}");
     assert!((number("power_balance") - 1.0).abs() < 0.02, "{report}");
-    assert!((number("near_power_balance") - 1.0).abs() < 0.02, "{report}");
+    assert!((number("near_power_balance") - 1.0).abs() < 0.005, "{report}");
     let cuts = fs::read_to_string(bench.path("s/pattern.csv")).unwrap();
     assert!(cuts.starts_with("freq_ghz,psi_deg,e_plane_total_dbi") && cuts.lines().count() == 362, "{cuts:.200}");
     let source = fs::read_to_string(bench.path("s/pattern.ffs")).unwrap();

@@ -5,9 +5,9 @@
 //!
 //! 1. Vertices within the tolerance become one; what collapses is dropped; a body that is inside out is turned.
 //! 2. Where a vertex lies on an edge or in a face of any body, or two edges cross, there is a node on both
-//!    ([`imprint`]).
+//!    (`imprint`).
 //! 3. Each face with nodes is cut along all edges that lie in it; the cells that two bodies have in common are
-//!    triangulated once for both ([`cells`]). A facet that two bodies have is then the same three vertices.
+//!    triangulated once for both (`cells`). A facet that two bodies have is then the same three vertices.
 //! 4. What is left is checked: each body closed, no facet on the same side of two bodies, no two facets that cross, no
 //!    body within another.
 //!
