@@ -1,19 +1,21 @@
 //! Imported bodies as a mesh: their split surface in a sphere of air, all of it filled at once, with the feed's line.
 //!
-//! All metal is of its true thickness. The feed is a line of edges across the gap: a narrow strip of facets within the
+//! Thin metal plates are sheets unless their true thickness is asked for. The feed is a line of edges across the gap: a narrow strip of facets within the
 //! region that it runs through keeps the line in the mesh, and carries no condition.
 
 use super::PipelineError;
-use super::mesh::{Density, GRADING, Meshed, N_WORST, Shape};
+use super::mesh::{Density, GRADING, MeshSettings, Meshed, N_WORST, Shape};
 use super::scene::Scene;
 use super::stages::{check_folds, guarded_split, splitting};
-use crate::antenna::bodies::Gap;
+use crate::antenna::bodies::{Gap, WithSheets, with_sheets};
 use crate::deform::{DeformError, SmoothMap, SplitSettings};
 use crate::geometry::{DVec3, FaceId, Plc, Region, RegionId, RegionRole, VertexId, intersect};
 use crate::project::{BodiesSpec, Project};
 use crate::task::Task;
-use crate::tet::{FaceGroup, FaceRole, SizingSettings, Surface, SurfaceFacet, fill, quality, remesh, sphere};
-use crate::tlm::Resistor;
+use crate::tet::{
+    FaceGroup, FaceRole, Metal, Sizes, SizingSettings, Surface, SurfaceFacet, fill, quality, remesh, sphere,
+};
+use crate::tlm::LumpedPort;
 use crate::units::{C0, from_mm, to_mm};
 use std::time::Instant;
 
@@ -28,54 +30,90 @@ const WIDTHS: [f64; 3] = [0.7, 0.3, 0.1];
 /// Room between the antenna and the outer sphere, wavelengths at the middle of the band.
 const ROOM: f64 = 0.5;
 
-/// What is resonant about bodies: the extent of the metal that is fed, m, and the permittivity of what it stands on.
-///
-/// Without a feed: of the smallest metal body, and the greatest permittivity.
-fn resonator(bodies: &BodiesSpec) -> (f64, f64) {
+/// What is resonant about bodies: the smaller one of the metal bodies that are fed and what it stands on; without a feed
+/// the smallest metal body and the greatest permittivity.
+struct Resonator {
+    /// Greatest extent and the next one, m.
+    along: f64,
+    across: f64,
+    eps_r: f64,
+}
+
+fn resonator(bodies: &BodiesSpec) -> Resonator {
     let plc = bodies.to_plc();
     let gap = bodies.gap().ok().flatten();
     let fed = |id: RegionId| {
         let at = |v: VertexId| plc.facets.iter().any(|f| f.vertices.contains(&v) && [f.back, f.front].contains(&id));
         gap.is_none_or(|gap| gap.ends.iter().any(|&v| at(v)))
     };
-    let extent = |id: RegionId| {
+    let extents = |id: RegionId| {
         let (lo, hi) = plc.boundary(id).bounds();
-        (hi - lo).max_element()
+        sorted(hi - lo)
     };
-    let metal = plc.solids().filter(|(id, r)| r.role == RegionRole::Conductor && fed(*id)).map(|(id, _)| extent(id));
+    let metal = plc.solids().filter(|(id, r)| r.role == RegionRole::Conductor && fed(*id)).map(|(id, _)| extents(id));
     let (lo, hi) = bodies.bounds();
     let eps_r = match gap {
         Some(gap) => plc.regions[gap.region.index()].eps_r,
         None => plc.regions.iter().map(|r| r.eps_r).fold(1.0, f64::max),
     };
-    (metal.fold((hi - lo).max_element(), f64::min), eps_r)
+    let [_, across, along] = metal.fold(sorted(hi - lo), |a, b| if a[2] < b[2] { a } else { b });
+    Resonator { along, across, eps_r }
+}
+
+fn sorted(extents: DVec3) -> [f64; 3] {
+    let mut extents = extents.to_array();
+    extents.sort_by(f64::total_cmp);
+    extents
 }
 
 /// A band to begin with: around the half-wave resonance of the fed metal, Hz.
 pub(super) fn usual_band(bodies: &BodiesSpec) -> [f64; 2] {
-    let (extent, eps_r) = resonator(bodies);
-    let half_wave = C0 / (2.0 * extent * eps_r.sqrt());
+    let Resonator { along, eps_r, .. } = resonator(bodies);
+    let half_wave = C0 / (2.0 * along * eps_r.sqrt());
     [half_wave * 2.0 / 3.0, half_wave * 4.0 / 3.0]
 }
 
-/// Wanted edges on bodies and longest ones in the air, m.
-pub(super) fn edges(bodies: &BodiesSpec, density: Density, band: [f64; 2]) -> [f64; 2] {
+/// Greatest extent of a resonator over the one that its edges are measured by, at the most.
+const SLENDER: f64 = 2.5;
+/// Thickness of a metal plate that may be taken as a sheet over the extent that edges are measured by.
+const FOIL: f64 = 1.0 / 40.0;
+
+/// Lengths by which bodies are meshed, m.
+pub(super) struct Edges {
+    pub(super) sizes: Sizes,
+    /// Longest edges in the air.
+    pub(super) in_air: f64,
+    /// Greatest thickness of a metal plate that is taken as a sheet.
+    pub(super) thickest: f64,
+}
+
+pub(super) fn edges(bodies: &BodiesSpec, density: Density, band: [f64; 2]) -> Edges {
     let fineness = density.fineness();
     let in_air = C0 / band[1] / fineness.per_wavelength;
-    let (extent, _) = resonator(bodies);
-    [((fineness.rim + fineness.inner) / 2.0 * extent).min(in_air), in_air]
+    let Resonator { along, across, .. } = resonator(bodies);
+    let extent = across.max(along / SLENDER);
+    let size = |part: f64| (part * extent).min(in_air);
+    Edges {
+        sizes: Sizes { inner: size(fineness.inner), at_metal: size(fineness.rim) },
+        in_air,
+        thickest: FOIL * extent,
+    }
 }
 
 /// Meshes imported bodies and the air around them.
 pub(super) fn mesh(
     (project, bodies): (&Project, &BodiesSpec),
     shape: Shape,
-    density: Density,
+    settings: MeshSettings,
     band: [f64; 2],
     task: &Task,
 ) -> Result<Meshed, PipelineError> {
     let started = Instant::now();
-    let how = How { splitting: splitting(project), edges: edges(bodies, density, band), band };
+    let mut edges = edges(bodies, settings.density, band);
+    if settings.metal == Metal::Solid {
+        edges.thickest = 0.0;
+    }
+    let how = How { splitting: splitting(project), edges, band };
     let mut meshed = match shape {
         Shape::Flat => how.carried(bodies, |p| Ok(p.to_vec()), task)?,
         Shape::Deformed => {
@@ -95,7 +133,7 @@ pub(super) fn mesh(
 
 struct How {
     splitting: SplitSettings,
-    edges: [f64; 2],
+    edges: Edges,
     band: [f64; 2],
 }
 
@@ -109,21 +147,23 @@ impl How {
         let flat = bodies.to_plc();
         let gap = bodies.gap().map_err(|e| PipelineError::Feed(e.into()))?;
         let kept: Vec<VertexId> = gap.iter().flat_map(|g| g.ends).collect();
-        let fine = remesh(&flat, &kept, self.edges[0], from_mm(bodies.weld_mm))
+        let WithSheets { plc, is_sheet } = with_sheets(&flat, self.edges.thickest, &kept);
+        let fine = remesh(&plc, &kept, self.edges.sizes, from_mm(bodies.weld_mm))
             .map_err(|at| PipelineError::Unmeshable { place_mm: at.to_array().map(to_mm) })?;
         let split = guarded_split(&fine, &carry, self.splitting, task)?;
         let posed = split.flat.with_vertices(split.images);
-        let mut surface = surface_of(&posed);
+        let mut surface = surface_of(&posed, &is_sheet);
         let mut line = Vec::new();
         if let Some(gap) = gap {
             let ends = gap.ends.map(|v| flat.vertices[v.index()]);
             let number = |p: DVec3| split.flat.vertices.iter().position(|q| *q == p).map(VertexId::new);
             let [Some(from), Some(to)] = ends.map(number) else { return Err(PipelineError::NoRoomForFeed) };
             let flat_place = |part: f64, aside: DVec3| ends[0].lerp(ends[1], part) + aside;
-            line = add_feed(&mut surface, Gap { ends: [from, to], ..gap }, self.edges[0], flat_place, &carry)?;
+            line =
+                add_feed(&mut surface, Gap { ends: [from, to], ..gap }, self.edges.sizes.at_metal, flat_place, &carry)?;
         }
         let n_surface = self.add_sphere(&mut surface);
-        let sizing = SizingSettings { h_max: self.edges[1], grading: GRADING };
+        let sizing = SizingSettings { h_max: self.edges.in_air, grading: GRADING };
         let filled = fill(&surface, &[], sizing, task).map_err(crate::tet::EncloseError::from)?;
         // Halved edges: their middles are numbered after the surface's vertices.
         let splits = &filled.recovery.splits;
@@ -154,8 +194,8 @@ impl How {
         let center = lo.midpoint(hi);
         let reach = surface.vertices.iter().map(|p| p.distance(center)).fold(0.0, f64::max);
         let wavelength = 2.0 * C0 / (self.band[0] + self.band[1]);
-        let radius = reach + (ROOM * wavelength).max(2.0 * self.edges[1]);
-        let (points, faces) = sphere(center, radius, self.edges[1]);
+        let radius = reach + (ROOM * wavelength).max(2.0 * self.edges.in_air);
+        let (points, faces) = sphere(center, radius, self.edges.in_air);
         let first = surface.vertices.len();
         surface.vertices.extend(points);
         surface.groups.push(FaceGroup { name: "outer".to_owned(), role: FaceRole::Outer });
@@ -170,8 +210,8 @@ impl How {
     }
 }
 
-/// The bodies' surface with the outside, the air, and a group for each conductor.
-fn surface_of(plc: &Plc) -> Surface {
+/// The bodies' surface with the outside, the air, and a group for each conductor; what a sheet was is air.
+fn surface_of(plc: &Plc, is_sheet: &[bool]) -> Surface {
     let outside = Region { name: "outside".to_owned(), ..plc.regions[0].clone() };
     let regions: Vec<Region> = std::iter::once(outside).chain(plc.regions.iter().cloned()).collect();
     let mut groups = Vec::new();
@@ -181,12 +221,15 @@ fn surface_of(plc: &Plc) -> Surface {
         groups.push(FaceGroup { name: format!("pec_{}", region.name), role: FaceRole::Conductor });
     }
     let facet = |f: &crate::geometry::Facet| {
-        let group = match [f.back, f.front].map(|r| group_of[r.index()]) {
-            // What lies between two conductors bounds nothing.
-            [Some(_), Some(_)] | [None, None] => None,
-            [group, None] | [None, group] => group,
+        let is_body = |r: RegionId| group_of[r.index()].is_some() && !is_sheet[r.index()];
+        let group = match [f.back, f.front] {
+            // What lies between two bodies of metal bounds nothing.
+            sides if sides.into_iter().all(is_body) => None,
+            [back, front] if is_body(front) => group_of[front.index()].or(group_of[back.index()]),
+            [back, front] => group_of[back.index()].or(group_of[front.index()]),
         };
-        let [back, front] = [f.back, f.front].map(|r| RegionId::new(r.index() + AIR_ID));
+        let [back, front] =
+            [f.back, f.front].map(|r| RegionId::new(if is_sheet[r.index()] { AIR_ID } else { r.index() + AIR_ID }));
         SurfaceFacet { vertices: f.vertices, back, front, group }
     };
     Surface { vertices: plc.vertices.clone(), facets: plc.facets.iter().map(facet).collect(), regions, groups }
@@ -237,8 +280,7 @@ fn add_feed(
     Err(PipelineError::NoRoomForFeed)
 }
 
-/// The source's resistance as resistors along the feed's line.
-pub(super) fn resistors(meshed: &Meshed, ohm: f64) -> Vec<Resistor> {
-    let Some(line) = meshed.posts.first() else { return Vec::new() };
-    super::loads::along(meshed, line, ohm)
+/// The source across the feed's line.
+pub(super) fn port(meshed: &Meshed, resistance: f64) -> Option<LumpedPort> {
+    meshed.posts.first().map(|chain| LumpedPort { chain: chain.clone(), resistance })
 }

@@ -104,7 +104,8 @@ fn estimate_bodies(bodies: &BodiesSpec, settings: &SolveSettings, speed: f64) ->
     bodies.feed.ok_or(PipelineError::NoFeed)?;
     let [lo, hi] = settings.band;
     let pulse = Pulse::new(lo, hi)?;
-    let [edge, in_air] = super::bodies::edges(bodies, settings.mesh.density, settings.band);
+    let super::bodies::Edges { sizes, in_air, .. } = super::bodies::edges(bodies, settings.mesh.density, settings.band);
+    let edge = f64::midpoint(sizes.inner, sizes.at_metal);
     let plc = bodies.to_plc();
     let area: f64 = (0..plc.facets.len()).map(|f| doubled_area_vector(plc.corners(f)).length() / 2.0).sum();
     let (low, high) = bodies.bounds();

@@ -2,7 +2,6 @@
 
 use super::mesh::Meshed;
 use crate::antenna::{Conductor, PatchParams};
-use crate::geometry::VertexId;
 use crate::tet::Metal;
 use crate::tlm::{Loads, Resistor};
 
@@ -18,20 +17,9 @@ pub(super) fn loads(params: &PatchParams, meshed: &Meshed, metal: Metal) -> Load
         Conductor::Sheet(resistance) => Some((name.to_owned(), sides * resistance)),
     });
     let posts = meshed.posts.iter().zip(&params.resistors);
-    let resistors = posts.flat_map(|(chain, resistor)| along(meshed, chain, resistor.resistance)).collect();
+    let resistors =
+        posts.flat_map(|(chain, resistor)| Resistor::along(&meshed.mesh, chain, resistor.resistance)).collect();
     Loads { sheets: sheets.collect(), resistors, ..Loads::default() }
-}
-
-/// A resistance shared by the edges of a chain in proportion to their length.
-pub(super) fn along(meshed: &Meshed, chain: &[VertexId], resistance: f64) -> Vec<Resistor> {
-    let length =
-        |pair: &[VertexId]| meshed.mesh.vertices[pair[0].index()].distance(meshed.mesh.vertices[pair[1].index()]);
-    let total: f64 = chain.windows(2).map(length).sum();
-    let share = |pair: &[VertexId]| Resistor {
-        edge: [pair[0].min(pair[1]), pair[0].max(pair[1])],
-        resistance: resistance * length(pair) / total,
-    };
-    chain.windows(2).map(share).collect()
 }
 
 #[cfg(test)]

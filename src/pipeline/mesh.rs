@@ -118,7 +118,7 @@ pub(super) fn mesh_band(
     task: &Task,
 ) -> Result<Meshed, PipelineError> {
     if let Some(bodies) = &project.bodies {
-        return super::bodies::mesh((project, bodies), shape, settings.density, band, task);
+        return super::bodies::mesh((project, bodies), shape, settings, band, task);
     }
     let tolerance = from_mm(project.settings.tolerance_mm);
     match shape {

@@ -4,7 +4,6 @@ use super::PipelineError;
 use super::loads::loads;
 use super::looks::Looks;
 use super::mesh::{MeshSettings, Meshed, Shape, mesh_band};
-use crate::geometry::VertexId;
 use crate::project::Project;
 use crate::results::{
     FarField, FeedLine, FittedResonance, Sweep, continued_sweep, far_fields, fit, fitted_resonance, frequencies, sweep,
@@ -201,13 +200,13 @@ pub fn solve(
         step: StepLimit::Clip(CLIPPED),
         edge_correction: settings.edge_correction,
         loads: match feed {
-            Some(feed) => Loads { resistors: super::bodies::resistors(&meshed, feed.ohm), ..Loads::default() },
+            Some(feed) => Loads { port: super::bodies::port(&meshed, feed.ohm), ..Loads::default() },
             None => loads(&project.antenna.to_params(), &meshed, settings.mesh.metal),
         },
         ..NetworkSettings::new(pulse.center)
     };
     let network = Network::<f32>::new(&meshed.mesh, &how, task)?;
-    let port_impedance = feed.map(|f| f.ohm).or(network.port_impedance).ok_or(TlmError::NoPort)?;
+    let port_impedance = network.port_impedance.ok_or(TlmError::NoPort)?;
     let line = match feed {
         Some(_) => FeedLine { impedance: port_impedance, length: 0.0, eps_r: 1.0, reference: REFERENCE },
         None => feed_line(project, port_impedance),
@@ -215,9 +214,6 @@ pub fn solve(
     let huygens = Huygens::new(&meshed.mesh)?;
     let fields = FieldRecorder::new(&meshed.mesh, &network, &huygens, &settings.pattern_freqs)?;
     let mut run = Run::new(&network, pulse).with_fields(fields);
-    if feed.is_some() {
-        run = run.with_gap(gap_edges(&meshed, &network).ok_or(PipelineError::NoRoomForFeed)?, port_impedance);
-    }
     if let Some(checkpoint) = resume {
         run = run.resumed(checkpoint)?;
     }
@@ -241,15 +237,6 @@ pub fn solve(
         seconds: started.elapsed().as_secs_f64(),
         meshed,
     })
-}
-
-/// The edges of the feed's line in a network, with the direction of each.
-fn gap_edges(meshed: &Meshed, network: &Network<f32>) -> Option<Vec<(u32, f64)>> {
-    let edge = |pair: &[VertexId]| {
-        let sign = if pair[0] < pair[1] { 1.0 } else { -1.0 };
-        Some((network.edge(&meshed.mesh, [pair[0], pair[1]])?, sign))
-    };
-    meshed.posts.first()?.windows(2).map(edge).collect()
 }
 
 fn feed_line(project: &Project, impedance: f64) -> FeedLine {

@@ -53,7 +53,7 @@ pub use quality::{
     tet_qualities,
 };
 pub use recover::{EdgeSplit, RecoveryReport};
-pub use remesh::remesh;
+pub use remesh::{Sizes, remesh};
 pub use sizing::{Sizing, SizingSettings};
 pub use sphere::sphere;
 pub use surface::{Surface, SurfaceFacet, SurfaceFault};

@@ -2,6 +2,7 @@
 
 use super::blocks::{LANES, Observe, Outside, Ports, Scatter, State};
 use super::modes::Modes;
+use super::network::Gap;
 use super::outgoing::Outgoing;
 use super::slots::Chunk;
 use super::{FieldRecorder, Network, Pulse, Real, TlmError};
@@ -51,17 +52,6 @@ impl Record {
     }
 }
 
-/// A current along edges, instead of a wave at the port.
-#[derive(Clone, Debug)]
-struct Impressed {
-    /// Edges, and 1 where the current runs towards the vertex with the higher number, else -1.
-    edges: Vec<(u32, f64)>,
-    /// Amperes per volt of the pulse.
-    per_volt: f64,
-    /// Whether the voltage along the edges is what the record holds.
-    is_port: bool,
-}
-
 /// A run of the field in a network.
 #[derive(Clone, Debug)]
 pub struct Run<'a, T> {
@@ -77,8 +67,8 @@ pub struct Run<'a, T> {
     pub(super) waves: Vec<f64>,
     pub(super) record: Record,
     pub(super) fields: Option<FieldRecorder>,
-    /// What drives instead of a wave at the port.
-    impressed: Option<Impressed>,
+    /// Edge along which a current is impressed, instead of a wave at the port.
+    impressed: Option<u32>,
     pub(super) seconds: f64,
 }
 
@@ -108,21 +98,7 @@ impl<'a, T: Real> Run<'a, T> {
     /// * `edge`: of [`Network::edge`].
     #[must_use]
     pub fn with_current(self, edge: u32) -> Self {
-        Self { impressed: Some(Impressed { edges: vec![(edge, 1.0)], per_volt: 1.0, is_port: false }), ..self }
-    }
-
-    /// The same run driven by a lumped port: a source of a resistance across a gap, along a chain of edges.
-    ///
-    /// The wave that comes in is the pulse; the record holds it and the gap's voltage at `(n + 1/2) dt`. Together the
-    /// chain's edges must hold the source's resistance as resistors of the network, each in proportion to its length, so
-    /// that the current through all of them makes one source of it: `2 v_inc / R`.
-    ///
-    /// * `chain`: edges of [`Network::edge`] from one side of the gap to the other, and 1 where the chain runs towards the
-    ///   vertex with the higher number, else -1.
-    /// * `resistance`: of the source, ohm.
-    #[must_use]
-    pub fn with_gap(self, chain: Vec<(u32, f64)>, resistance: f64) -> Self {
-        Self { impressed: Some(Impressed { edges: chain, per_volt: 2.0 / resistance, is_port: true }), ..self }
+        Self { impressed: Some(edge), ..self }
     }
 
     /// The same run with the field gathered at some frequencies.
@@ -193,33 +169,45 @@ impl<'a, T: Real> Run<'a, T> {
     fn step(&mut self) {
         let step = self.record.total.len();
         let at = |step: f64| self.pulse.at(step * self.network.dt);
-        let incident = if self.impressed.is_none() { at(step as f64) } else { 0.0 };
+        let network = self.network;
+        let gap = network.gap.as_ref().filter(|_| self.impressed.is_none());
+        let is_line = self.impressed.is_none() && gap.is_none();
+        let incident = if is_line { at(step as f64) } else { 0.0 };
         let later = at(step as f64 + 0.5);
         let arch = pulp::Arch::new();
         let (total, into_line) = self.meet_line(arch, incident);
-        let mut seen = [incident, total];
         let leaving = self.leave(arch);
         self.scatter(arch, into_line, &leaving);
         self.connect_shared();
         std::mem::swap(&mut self.voltages, &mut self.next);
-        if let Some(Impressed { edges, per_volt, is_port }) = &self.impressed {
-            let mut gap = 0.0;
-            for &(edge, sign) in edges {
-                let edge = edge as usize;
-                self.voltages[edge] -= T::new(0.5 * ETA0 * sign * per_volt * later) * self.network.weights[edge];
-                // The current piles up charge where it goes, so the field points back.
-                gap -= sign * self.voltages[edge].to_f64();
-            }
-            if *is_port {
-                seen = [later, gap];
-            }
+        if let Some(edge) = self.impressed {
+            self.impress(edge, later);
         }
+        // A lumped port's wave is that of its edges, half a step later than a line's.
+        let (incident, total) = gap.map_or((incident, total), |gap| (later, self.drive(gap, later)));
         if let Some(fields) = &mut self.fields {
             fields.sample(step, &self.voltages, self.reflected.as_flattened().as_flattened());
         }
-        let [incident, total] = seen;
         self.record.incident.push(incident);
         self.record.total.push(total);
+    }
+
+    /// Adds a current along an edge, A, towards its vertex with the higher number.
+    fn impress(&mut self, edge: u32, current: f64) {
+        let edge = edge as usize;
+        self.voltages[edge] -= T::new(0.5 * ETA0 * current) * self.network.weights[edge];
+    }
+
+    /// Adds the current of a lumped port's incident wave; the voltage across the gap.
+    fn drive(&mut self, gap: &Gap, incident: f64) -> f64 {
+        let current = 2.0 * incident / gap.resistance;
+        let mut across = 0.0;
+        for &(edge, sign) in &gap.edges {
+            self.impress(edge, sign * current);
+            // The current piles up charge where it goes, so the field points back.
+            across -= sign * self.voltages[edge as usize].to_f64();
+        }
+        across
     }
 
     /// All cells, and the edges that only one chunk has.
