@@ -17,6 +17,7 @@ use crate::tet::{
 };
 use crate::tlm::LumpedPort;
 use crate::units::{C0, from_mm, to_mm};
+use std::collections::BTreeSet;
 use std::time::Instant;
 
 /// Number of the air among the mesh's regions; the bodies follow it.
@@ -30,8 +31,10 @@ const WIDTHS: [f64; 3] = [0.7, 0.3, 0.1];
 /// Room between the antenna and the outer sphere, wavelengths at the middle of the band.
 const ROOM: f64 = 0.5;
 
-/// What is resonant about bodies: the smaller one of the metal bodies that are fed and what it stands on; without a feed
-/// the smallest metal body and the greatest permittivity.
+/// What is resonant about bodies: of the two pieces of metal that are fed the smaller one, and what the gap is made of.
+///
+/// A piece is metal that hangs together, but for the largest body, which is the ground if there is one. Without a feed
+/// it is the largest piece but one, and the greatest permittivity.
 struct Resonator {
     /// Greatest extent and the next one, m.
     along: f64,
@@ -42,28 +45,52 @@ struct Resonator {
 fn resonator(bodies: &BodiesSpec) -> Resonator {
     let plc = bodies.to_plc();
     let gap = bodies.gap().ok().flatten();
-    let fed = |id: RegionId| {
-        let at = |v: VertexId| plc.facets.iter().any(|f| f.vertices.contains(&v) && [f.back, f.front].contains(&id));
-        gap.is_none_or(|gap| gap.ends.iter().any(|&v| at(v)))
-    };
-    let extents = |id: RegionId| {
-        let (lo, hi) = plc.boundary(id).bounds();
-        sorted(hi - lo)
-    };
-    let metal = plc.solids().filter(|(id, r)| r.role == RegionRole::Conductor && fed(*id)).map(|(id, _)| extents(id));
-    let (lo, hi) = bodies.bounds();
+    let mut pieces = pieces(&plc);
     let eps_r = match gap {
-        Some(gap) => plc.regions[gap.region.index()].eps_r,
-        None => plc.regions.iter().map(|r| r.eps_r).fold(1.0, f64::max),
+        Some(gap) => {
+            pieces.retain(|(vertices, _)| gap.ends.iter().any(|v| vertices.contains(v)));
+            plc.regions[gap.region.index()].eps_r
+        }
+        None => {
+            if pieces.len() > 2 {
+                pieces.drain(..pieces.len() - 2);
+            }
+            plc.regions.iter().map(|r| r.eps_r).fold(1.0, f64::max)
+        }
     };
-    let [_, across, along] = metal.fold(sorted(hi - lo), |a, b| if a[2] < b[2] { a } else { b });
+    let (lo, hi) = bodies.bounds();
+    let [_, across, along] = pieces.first().map_or_else(|| ascending(hi - lo), |p| p.1);
     Resonator { along, across, eps_r }
 }
 
-fn sorted(extents: DVec3) -> [f64; 3] {
+fn ascending(extents: DVec3) -> [f64; 3] {
     let mut extents = extents.to_array();
     extents.sort_by(f64::total_cmp);
     extents
+}
+
+/// The pieces of metal, the smallest first: their vertices, and their extents, ascending, m.
+fn pieces(plc: &Plc) -> Vec<(BTreeSet<VertexId>, [f64; 3])> {
+    let metal = plc.solids().filter(|(_, r)| r.role == RegionRole::Conductor);
+    let mut bodies: Vec<BTreeSet<VertexId>> =
+        metal.map(|(id, _)| plc.boundary_faces(id).into_iter().flatten().collect()).collect();
+    let extents = |vertices: &BTreeSet<VertexId>| {
+        let places = vertices.iter().map(|v| plc.vertices[v.index()]);
+        let (lo, hi) = places.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), p| (lo.min(p), hi.max(p)));
+        ascending(hi - lo)
+    };
+    bodies.sort_by(|a, b| extents(a)[2].total_cmp(&extents(b)[2]));
+    let largest = bodies.pop();
+    let mut pieces: Vec<BTreeSet<VertexId>> = Vec::new();
+    for mut body in bodies {
+        let (joined, apart): (Vec<_>, Vec<_>) = pieces.into_iter().partition(|piece| !piece.is_disjoint(&body));
+        body.extend(joined.into_iter().flatten());
+        pieces = apart;
+        pieces.push(body);
+    }
+    let mut pieces: Vec<_> = pieces.into_iter().chain(largest).map(|p| (extents(&p), p)).map(|(e, p)| (p, e)).collect();
+    pieces.sort_by(|a, b| a.1[2].total_cmp(&b.1[2]));
+    pieces
 }
 
 /// A band to begin with: around the half-wave resonance of the fed metal, Hz.

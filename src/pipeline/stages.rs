@@ -2,7 +2,7 @@
 
 use super::PipelineError;
 use super::fields::{Columns, Fields};
-use super::marks::{Mark, marks};
+use super::marks::{Mark, marks, source_mark};
 use super::scene::Scene;
 use crate::antenna::{PATCH, PatchParams, Resistor, flat_complex};
 use crate::cage::Cage;
@@ -155,7 +155,7 @@ fn run_bodies(project: &Project, bodies: &BodiesSpec, task: &Task) -> Result<Sta
     let deformed = Deformed {
         cage: Arc::clone(&scene.cage),
         posed,
-        marks: Vec::new(),
+        marks: source_mark(bodies, &surface.images).into_iter().collect(),
         fields: Fields::new(&surface.flat, &reference, &surface.images),
         flat: Arc::new(surface.flat),
         positions: surface.images,
