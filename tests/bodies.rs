@@ -3,7 +3,9 @@
 use conformant::geometry::{DVec3, Plc, RegionRole};
 use conformant::io::bodies::{Solid, name_plainly, read};
 use conformant::io::{ExportOptions, export, verify};
-use conformant::pipeline::{Density, MeshSettings, Shape, SolveSettings, Solved, StopRule, deform, flat, mesh, solve};
+use conformant::pipeline::{
+    Density, MeshSettings, Shape, SolveSettings, Solved, StopRule, deform, estimate, flat, mesh, solve,
+};
 use conformant::project::{
     BendPlane, BodiesSpec, BodyKind, BodySpec, Edit, LooseBody, MaterialSpec, PresetEntry, PresetSpec, Project,
     RuleSpec, WELD_MM,
@@ -129,7 +131,12 @@ fn solved_flat(project: &Project, band: [f64; 2]) -> Solved {
         ..SolveSettings::new(mesh, band)
     };
     let solved = solve(project, Shape::Flat, &settings, None, &mut |_| (), &Task::default());
-    solved.unwrap_or_else(|e| panic!("{e}"))
+    let solved = solved.unwrap_or_else(|e| panic!("{e}"));
+    let guess = estimate(project, Shape::Flat, &settings, 50e6).expect("it has a feed");
+    let cells = guess.n_tets as f64 / solved.meshed.mesh.tets.len() as f64;
+    let steps = guess.n_steps as f64 / solved.record.total.len() as f64;
+    assert!((0.5..2.0).contains(&cells) && (0.33..3.0).contains(&steps), "{cells} of the cells, {steps} of the steps");
+    solved
 }
 
 #[test]

@@ -4,7 +4,7 @@
 //! region that it runs through keeps the line in the mesh, and carries no condition.
 
 use super::PipelineError;
-use super::mesh::{Density, GRADING, MeshSettings, Meshed, N_WORST, Shape};
+use super::mesh::{GRADING, MeshSettings, Meshed, N_WORST, Shape};
 use super::scene::Scene;
 use super::stages::{check_folds, guarded_split, splitting};
 use crate::antenna::bodies::{Gap, WithSheets, with_sheets};
@@ -114,17 +114,23 @@ pub(super) struct Edges {
     pub(super) thickest: f64,
 }
 
-pub(super) fn edges(bodies: &BodiesSpec, density: Density, band: [f64; 2]) -> Edges {
-    let fineness = density.fineness();
+pub(super) fn edges(bodies: &BodiesSpec, settings: MeshSettings, band: [f64; 2]) -> Edges {
+    let fineness = settings.density.fineness();
     let in_air = C0 / band[1] / fineness.per_wavelength;
     let Resonator { along, across, .. } = resonator(bodies);
     let extent = across.max(along / SLENDER);
     let size = |part: f64| (part * extent).min(in_air);
-    Edges {
-        sizes: Sizes { inner: size(fineness.inner), at_metal: size(fineness.rim) },
-        in_air,
-        thickest: FOIL * extent,
-    }
+    let thickest = if settings.metal == Metal::Sheet { FOIL * extent } else { 0.0 };
+    Edges { sizes: Sizes { inner: size(fineness.inner), at_metal: size(fineness.rim) }, in_air, thickest }
+}
+
+/// Smallest extent of a body that is no sheet, m.
+pub(super) fn thinnest(bodies: &BodiesSpec, edges: &Edges) -> f64 {
+    let plc = bodies.to_plc();
+    let kept: Vec<VertexId> = bodies.gap().ok().flatten().iter().flat_map(|gap| gap.ends).collect();
+    let is_sheet = with_sheets(&plc, edges.thickest, &kept).is_sheet;
+    let bodies = plc.solids().filter(|(id, _)| !is_sheet[id.index()]).map(|(id, _)| plc.boundary(id).bounds());
+    bodies.map(|(lo, hi)| (hi - lo).min_element()).fold(f64::INFINITY, f64::min)
 }
 
 /// Meshes imported bodies and the air around them.
@@ -136,10 +142,7 @@ pub(super) fn mesh(
     task: &Task,
 ) -> Result<Meshed, PipelineError> {
     let started = Instant::now();
-    let mut edges = edges(bodies, settings.density, band);
-    if settings.metal == Metal::Solid {
-        edges.thickest = 0.0;
-    }
+    let edges = edges(bodies, settings, band);
     let how = How { splitting: splitting(project), edges, band };
     let mut meshed = match shape {
         Shape::Flat => how.carried(bodies, |p| Ok(p.to_vec()), task)?,
