@@ -28,7 +28,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("units", &[]),
     ("task", &[]),
     ("geometry", &[]),
-    ("antenna", &["geometry", "units"]),
+    ("antenna", &["geometry", "task", "units"]),
     ("cage", &["geometry", "units"]),
     ("deform", &["geometry", "task", "units"]),
     ("distortion", &["antenna", "cage", "deform", "geometry", "task", "units"]),
@@ -37,7 +37,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("results", &["geometry", "task", "tlm", "units"]),
     ("plot", &["results", "units"]),
     ("io", &["geometry", "results", "tet", "tlm", "units"]),
-    ("project", &["antenna", "cage", "geometry", "io", "units"]),
+    ("project", &["antenna", "cage", "geometry", "io", "task", "units"]),
     ("render", &["geometry", "units"]),
     (
         "pipeline",

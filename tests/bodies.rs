@@ -25,7 +25,8 @@ fn loose(mut solids: Vec<Solid>) -> Vec<LooseBody> {
 
 fn imported(files: &[&Path]) -> Project {
     let solids = files.iter().flat_map(|path| read(path, 1e-3).unwrap_or_else(|e| panic!("{e}"))).collect();
-    let bodies = BodiesSpec::weld(&loose(solids), WELD_MM).unwrap_or_else(|faults| panic!("{faults:?}"));
+    let bodies =
+        BodiesSpec::weld(&loose(solids), WELD_MM, &Task::default()).unwrap_or_else(|faults| panic!("{faults:?}"));
     let mut project = Project::default();
     Edit::SetBodies(Some(Box::new(bodies))).apply(&mut project).expect("valid");
     project
@@ -105,7 +106,7 @@ fn boxes(parts: &[(&str, [f64; 3], [f64; 3], f64)]) -> BodiesSpec {
         .into_iter()
         .map(|s| LooseBody { spec: BodySpec { kind: kind(&s.name), name: s.name }, surface: s.surface })
         .collect();
-    BodiesSpec::weld(&loose, WELD_MM).expect("they touch or are apart")
+    BodiesSpec::weld(&loose, WELD_MM, &Task::default()).expect("they touch or are apart")
 }
 
 /// The paper's patch without its line, of copper foil.

@@ -13,7 +13,7 @@ pub mod outline;
 pub mod params;
 pub mod patch;
 
-pub use bodies::{Body, BodyFault};
+pub use bodies::{Body, BodyFault, WeldError};
 pub use design::{DesignError, FirstGuess, first_guess};
 pub use loads::{Conductor, MAX_RESISTORS, Resistor};
 pub use outline::OutlineError;

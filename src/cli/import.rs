@@ -2,11 +2,12 @@
 
 use super::args::ImportArgs;
 use super::report::table;
-use crate::antenna::BodyFault;
+use crate::antenna::{BodyFault, WeldError};
 use crate::io::bodies::{Solid, name_plainly, read};
 use crate::io::outline::LENGTH_UNITS;
 use crate::pipeline::Scene;
 use crate::project::{BodiesSpec, BodyKind, BodySpec, Edit, LooseBody, MaterialSpec, Project, file};
+use crate::task::Task;
 use crate::units::to_mm;
 use anyhow::{Context, Result, bail, ensure};
 use serde::Serialize;
@@ -38,7 +39,7 @@ struct FaultReport {
     places_mm: Vec<[f64; 3]>,
 }
 
-pub(super) fn run(args: &ImportArgs) -> Result<()> {
+pub(super) fn run(args: &ImportArgs, task: &Task) -> Result<()> {
     if let Some(out) = &args.out {
         let name = out.display();
         ensure!(args.force || !out.exists(), "{name} exists: choose another name, or --force to replace it");
@@ -50,7 +51,7 @@ pub(super) fn run(args: &ImportArgs) -> Result<()> {
         faults: Vec::new(),
         project: args.out.as_ref().map(|out| out.display().to_string()),
     };
-    match BodiesSpec::weld(&loose, args.weld) {
+    match BodiesSpec::weld(&loose, args.weld, task) {
         Ok(bodies) => {
             let bodies = fed(bodies, args)?;
             let plc = bodies.to_plc();
@@ -66,7 +67,8 @@ pub(super) fn run(args: &ImportArgs) -> Result<()> {
                 file::write(out, &project)?;
             }
         }
-        Err(faults) => {
+        Err(WeldError::Cancelled(cancelled)) => return Err(cancelled.into()),
+        Err(WeldError::Faults(faults)) => {
             report.project = None;
             report.faults = faults.iter().map(FaultReport::of).collect();
         }

@@ -98,7 +98,7 @@ pub fn fail(error: &anyhow::Error) -> ExitCode {
 fn dispatch(command: Command, draw: Draw<'_>, task: &Task) -> Result<ExitCode> {
     match command {
         Command::New(args) => new::run(&args)?,
-        Command::Import(args) => import::run(&args)?,
+        Command::Import(args) => import::run(&args, task)?,
         Command::Deform(args) => deform::deform(&args, task)?,
         Command::Compensate(args) => deform::compensate(&args, task)?,
         Command::Export(args) => export::export(&args, task)?,

@@ -8,6 +8,7 @@ use super::disk::Disk;
 use super::edit_ui::Outline;
 use super::export_dialog::ExportDialog;
 use super::frame::set_scale;
+use super::layout::Pane;
 use super::mesh_export::MeshExport;
 use super::mesh_session::{MeshNews, MeshSession, has_cylinder};
 use super::outbox::{Action, Outbox};
@@ -19,7 +20,7 @@ use super::session::{News, Session, first_project};
 use super::solve_session::{SolveNews, SolveSession};
 use super::status::{Messages, Weight};
 use super::theme;
-use super::ui_state::{RightTab, Tab, UiState};
+use super::ui_state::UiState;
 use super::viewport::Viewport;
 use super::{APP_ID, paint, palette};
 use crate::pipeline::compare_job::CompareJob;
@@ -119,7 +120,7 @@ impl App {
             shows_mesh: self.state.mesh.shows,
             is_solving: self.solve.is_busy(),
             has_results: !self.solve.runs().is_empty(),
-            shows_results: self.state.solve.shows_results,
+            shows_results: self.state.layout.is_in_front(Pane::Results),
             has_pattern: self.solve.runs().iter().any(|run| !run.result.patterns.is_empty()),
             shows_pattern: self.state.solve.shows_pattern,
             has_bodies: project.bodies.is_some(),
@@ -131,7 +132,7 @@ impl App {
             shows_ghost: self.state.shows_ghost,
             shows_cage: self.state.shows_cage,
             sees_through: self.state.sees_through,
-            shows_log: self.state.shows_log,
+            shows_log: self.state.layout.is_in_front(Pane::Messages),
             selects_by_box: self.state.editing.outline == Some(Outline::Box),
             selects_by_lasso: self.state.editing.outline == Some(Outline::Lasso),
             snaps: self.state.editing.snaps,
@@ -139,7 +140,7 @@ impl App {
             mirrors: self.state.editing.mirrors,
             can_play: self.session.can_play(),
             is_playing: self.session.play().is_on(),
-            shows_history: self.state.tab == Tab::History && self.state.shows_left,
+            shows_history: self.state.layout.is_in_front(Pane::History),
             shows_left: self.state.shows_left,
             shows_right: self.state.shows_right,
             theme: Some(self.state.theme),
@@ -244,7 +245,7 @@ impl App {
             Command::Compensate => self.compensate(CompensationMode::Isometric),
             Command::CompensateNot => self.compensate(CompensationMode::None),
             Command::Mesh => {
-                (state.right_tab, state.shows_right) = (RightTab::Mesh, true);
+                state.show_pane(Pane::Mesh);
                 self.mesh.start(self.session.project(), &state.mesh);
             }
             Command::ExportMesh => {
@@ -256,11 +257,10 @@ impl App {
             }
             Command::ShowMesh => state.show_mesh(!state.mesh.shows),
             Command::Solve => {
-                (state.right_tab, state.shows_right) = (RightTab::Solve, true);
-                state.solve.shows_results = true;
+                state.show_pane(Pane::Results);
+                state.show_pane(Pane::Solve);
                 self.solve.start(self.session.project(), &state.solve);
             }
-            Command::ShowResults => state.solve.shows_results = !state.solve.shows_results,
             Command::ShowPattern => {
                 state.solve.shows_pattern = !state.solve.shows_pattern;
                 state.show_mesh(false);

@@ -3,23 +3,28 @@
 use super::body_rows::body_rows;
 use super::dialogs::{PathField, Purpose, problem_with};
 use super::export_dialog::{answer, work};
-use super::field::rows;
+use super::field::{Choices, rows};
 use super::outbox::{Action, Outbox};
 use super::theme::Tokens;
 use super::ui_state::UiState;
-use crate::antenna::BodyFault;
+use crate::antenna::{BodyFault, WeldError};
 use crate::geometry::DVec3;
 use crate::io::bodies::{Solid, name_plainly, read};
 use crate::io::outline::LENGTH_UNITS;
 use crate::project::{BodiesSpec, BodyKind, BodySpec, Edit, LooseBody, MaterialSpec, WELD_MM};
+use crate::task::{Progress, Task};
 use crate::units::to_mm;
-use egui::{ComboBox, DragValue, RichText, ScrollArea, Spinner, Ui};
+use egui::{ComboBox, DragValue, ProgressBar, RichText, ScrollArea, Spinner, Ui};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::Receiver;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
 
 /// Range of the weld tolerance, mm.
 const WELD_RANGE_MM: (f64, f64) = (1e-6, 1.0);
+/// Time between two looks at how far the work is.
+const PAUSE: Duration = Duration::from_millis(100);
 /// Height of the lists of bodies and of problems, points.
 const LIST_HEIGHT: f32 = 170.0;
 
@@ -34,7 +39,52 @@ pub(super) struct BodiesDialog {
     own: Vec<MaterialSpec>,
     /// What was read and welded last.
     found: Option<(Asked, Found)>,
-    working: Option<(Asked, Receiver<Found>)>,
+    working: Option<Working>,
+}
+
+/// A thread that reads and welds; it stops when this is dropped.
+#[derive(Debug)]
+struct Working {
+    asked: Asked,
+    receiver: Receiver<Found>,
+    task: Task,
+    progress: Arc<Mutex<Option<Progress>>>,
+}
+
+impl Drop for Working {
+    fn drop(&mut self) {
+        self.task.cancel();
+    }
+}
+
+impl Working {
+    fn start(ui: &Ui, asked: &Asked) -> Self {
+        let progress = Arc::<Mutex<Option<Progress>>>::default();
+        let sink = Arc::clone(&progress);
+        let task = Task::with_progress(move |step| *sink.lock().unwrap_or_else(PoisonError::into_inner) = Some(step));
+        let (own, own_task) = (asked.clone(), task.clone());
+        let receiver = work(ui, move || welded(&own, &own_task).map_err(anyhow::Error::msg));
+        Self { asked: asked.clone(), receiver, task, progress }
+    }
+
+    /// How far it is.
+    fn ui(&self, ui: &mut Ui) {
+        let progress = *self.progress.lock().unwrap_or_else(PoisonError::into_inner);
+        ui.horizontal(|ui| {
+            match progress.filter(|p| p.total > 0) {
+                Some(p) => {
+                    let part = p.done as f32 / p.total as f32;
+                    ui.add(ProgressBar::new(part).desired_width(150.0).desired_height(14.0));
+                }
+                None => {
+                    ui.add(Spinner::new().size(14.0));
+                }
+            }
+            let phase = progress.map_or("beginning", |p| p.phase);
+            ui.label(RichText::new(format!("Reading and welding: {phase}…")).weak());
+        });
+        ui.ctx().request_repaint_after(PAUSE);
+    }
 }
 
 /// What bodies are read from and how they are welded.
@@ -72,6 +122,12 @@ impl BodiesDialog {
         }
     }
 
+    /// The work under way, if any.
+    #[cfg(test)]
+    pub(super) fn task(&self) -> Option<&Task> {
+        self.working.as_ref().map(|working| &working.task)
+    }
+
     /// Draws the dialog; true when it is to be closed.
     pub(super) fn ui(&mut self, ui: &mut Ui, state: &mut UiState, out: &mut Outbox) -> bool {
         ui.heading("Import bodies");
@@ -89,11 +145,8 @@ impl BodiesDialog {
             ui.label(RichText::new("No file yet: a body is a solid, a group or a node of a file.").weak());
         } else if current {
             made = self.report(ui);
-        } else {
-            ui.horizontal(|ui| {
-                ui.add(Spinner::new().size(14.0));
-                ui.label(RichText::new("Reading and welding…").weak());
-            });
+        } else if let Some(working) = &self.working {
+            working.ui(ui);
         }
         ui.add_space(8.0);
         let mut close = false;
@@ -102,7 +155,7 @@ impl BodiesDialog {
             let why = "Every body needs a material, and nothing may stand against welding";
             let go =
                 button.on_hover_text("Put these bodies in the patch's place").on_disabled_hover_text(why).clicked();
-            close = ui.button("Cancel").clicked();
+            close = ui.button("Cancel").on_hover_text("Stop, and import nothing").clicked();
             if let (true, Some(spec)) = (go, made) {
                 out.push(Action::Edit("bodies", Edit::SetBodies(Some(Box::new(spec)))));
                 state.fit = true;
@@ -147,7 +200,7 @@ impl BodiesDialog {
         let tip = "What a number in STL and OBJ files means; glTF is always in metres, with y up";
         let label = ui.label("Unit").on_hover_text(tip);
         let combo = ComboBox::from_id_salt("body unit").width(90.0).selected_text(LENGTH_UNITS[self.asked.unit].0);
-        let combo = combo.show_ui(ui, |ui| {
+        let combo = combo.show_list(ui, |ui| {
             for (k, (name, _)) in LENGTH_UNITS.iter().enumerate() {
                 ui.selectable_value(&mut self.asked.unit, k, *name);
             }
@@ -165,18 +218,21 @@ impl BodiesDialog {
 
     /// Starts to read and weld what is asked for, and takes what was found.
     fn work(&mut self, ui: &Ui) {
-        if let Some((asked, receiver)) = &self.working {
-            let Some(found) = answer(receiver) else { return };
-            self.found = Some((asked.clone(), found));
+        if let Some(working) = &self.working {
+            if working.asked != self.asked {
+                working.task.cancel();
+            }
+            let Some(found) = answer(&working.receiver) else { return };
+            if !working.task.is_cancelled() {
+                self.found = Some((working.asked.clone(), found));
+            }
             self.working = None;
         }
         let is_done = self.found.as_ref().is_some_and(|(asked, _)| *asked == self.asked);
         if is_done || self.asked.files.is_empty() {
             return;
         }
-        let asked = self.asked.clone();
-        let receiver = work(ui, move || welded(&asked).map_err(anyhow::Error::msg));
-        self.working = Some((self.asked.clone(), receiver));
+        self.working = Some(Working::start(ui, &self.asked));
     }
 
     /// The bodies with their materials, or what is wrong with them; what would be imported.
@@ -232,10 +288,13 @@ impl BodiesDialog {
     }
 }
 
-fn welded(asked: &Asked) -> Found {
+fn welded(asked: &Asked, task: &Task) -> Found {
     let unit = LENGTH_UNITS[asked.unit].1;
     let mut solids = Vec::new();
+    let phase = task.phase("reading files", asked.files.len());
     for path in &asked.files {
+        task.check().map_err(|cancelled| cancelled.to_string())?;
+        phase.advance(1);
         solids.extend(read(path, unit).map_err(|error| error.to_string())?);
     }
     name_plainly(&mut solids);
@@ -251,5 +310,10 @@ fn welded(asked: &Asked) -> Found {
             surface: std::mem::take(&mut solid.surface),
         })
         .collect();
-    Ok(Welded { solids, n_triangles, size: hi - lo, spec: BodiesSpec::weld(&loose, asked.weld_mm) })
+    let spec = match BodiesSpec::weld(&loose, asked.weld_mm, task) {
+        Ok(spec) => Ok(spec),
+        Err(WeldError::Faults(faults)) => Err(faults),
+        Err(WeldError::Cancelled(cancelled)) => return Err(cancelled.to_string()),
+    };
+    Ok(Welded { solids, n_triangles, size: hi - lo, spec })
 }

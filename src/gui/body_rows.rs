@@ -1,5 +1,6 @@
 //! What each body is made of, row by row.
 
+use super::field::Choices;
 use crate::project::materials::DIELECTRICS;
 use crate::project::{BodyKind, MaterialSpec};
 use egui::{ComboBox, DragValue, Grid, RichText, Ui};
@@ -22,7 +23,7 @@ pub(super) fn body_rows(
             let label = ui.label(name).on_hover_text(note);
             let combo =
                 ComboBox::from_id_salt(("body", k)).width(122.0).height(320.0).selected_text(text(kind.as_ref()));
-            let combo = combo.show_ui(ui, |ui| choices(ui, kind.as_ref(), own));
+            let combo = combo.show_list(ui, |ui| choices(ui, kind.as_ref(), own));
             combo.response.labelled_by(label.id).on_hover_text(format!("What {name} is made of"));
             if let Some(new) = combo.inner.flatten() {
                 changed = Some((k, new));

@@ -250,7 +250,7 @@ impl Command {
             Self::ExportMesh => ("Export mesh…", "Write the mesh for a field solver or a viewer"),
             Self::ShowMesh => ("Mesh view", "Show the mesh, cut open, instead of the antenna in its cage"),
             Self::Solve => ("Solve", "Compute the antenna's reflection over the band, in the background"),
-            Self::ShowResults => ("Results", "Show reflection, Smith chart and figures of the runs below the view"),
+            Self::ShowResults => ("Results", "Show or hide reflection, patterns and figures of the runs"),
             Self::ShowPattern => ("3-D pattern", "Draw the radiation pattern around the antenna"),
             Self::ExportResults => ("Export results…", "Write a run's reflection as a table or a Touchstone file"),
             Self::SavePlot => ("Save plot…", "Save a plot as SVG, PNG or CSV, as it would be printed"),
@@ -265,7 +265,7 @@ impl Command {
             Self::ShowCage => ("Cage", "Show the cage and its vertices"),
             Self::SeeThrough => ("See-through substrate", "Show the pin and the ground through the substrate"),
             Self::ShowHistory => ("History", "List every step of the project; go back to any of them"),
-            Self::ShowLog => ("Messages", "Show the messages since the program began"),
+            Self::ShowLog => ("Messages", "Show or hide the messages since the program began"),
             Self::ShowLeft => ("Left side", "Show the panels on the left of the view"),
             Self::ShowRight => ("Right side", "Show the panels on the right of the view"),
             Self::ResetLayout => {

@@ -3,7 +3,7 @@
 use super::outbox::Outbox;
 use super::theme::Tokens;
 use crate::project::Edit;
-use egui::{DragValue, Grid, Response, RichText, Slider, Ui, Widget};
+use egui::{ComboBox, DragValue, Grid, InnerResponse, Key, Response, RichText, Slider, Ui, Widget};
 use std::ops::RangeInclusive;
 
 /// Width of the labels of a panel, points: the longest one fits.
@@ -144,6 +144,38 @@ pub(super) fn rows<R>(
 pub(super) fn section<R>(ui: &mut Ui, title: &str, open: bool, content: impl FnOnce(&mut Ui) -> R) -> Option<R> {
     let heading = RichText::new(title).strong();
     egui::CollapsingHeader::new(heading).id_salt(title).default_open(open).show_unindented(ui, content).body_returned
+}
+
+/// A list of choices that closes whether one was chosen by the pointer or by a key.
+pub(super) trait Choices {
+    /// Draws it with its choices.
+    fn show_list<R>(self, ui: &mut Ui, choices: impl FnOnce(&mut Ui) -> R) -> InnerResponse<Option<R>>;
+}
+
+impl Choices for ComboBox<'_> {
+    fn show_list<R>(self, ui: &mut Ui, choices: impl FnOnce(&mut Ui) -> R) -> InnerResponse<Option<R>> {
+        let mut closes = false;
+        let shown = self.show_ui(ui, |ui| {
+            let inner = choices(ui);
+            closes = is_chosen_by_key(ui);
+            if closes {
+                ui.close();
+            }
+            inner
+        });
+        if closes {
+            shown.response.request_focus();
+        }
+        shown
+    }
+}
+
+/// Whether a key has pressed something of this layer in this frame.
+fn is_chosen_by_key(ui: &Ui) -> bool {
+    let is_pressed = ui.input(|i| i.key_pressed(Key::Enter) || i.key_pressed(Key::Space));
+    let focused = ui.memory(|m| m.focused()).filter(|_| is_pressed);
+    let layer = |id| ui.ctx().viewport(|v| v.this_pass.widgets.get(id).map(|w| w.layer_id));
+    focused.is_some_and(|id| layer(id) == Some(ui.layer_id()))
 }
 
 /// A small button with a symbol and a name for tooltips and screen readers.

@@ -1,19 +1,19 @@
 //! The frame around the view: size of the interface, sides shown, and the way from panel to panel by key.
 
 use super::app::App;
+use super::bars;
 use super::command::{Command, Facts};
+use super::layout::Pane;
 use super::outbox::Outbox;
 use super::status::{self, Workers};
-use super::ui_state::{Tab, UiState};
-use super::{bars, panel_results};
+use super::ui_state::UiState;
 use crate::render::Projection;
-use egui::containers::panel::PanelState;
 use egui::{CentralPanel, Context, Frame, Id, LayerId, Panel, Rect, Ui};
 
 /// Width of a panel's edge, points.
 const EDGE: f32 = 4.0;
-/// Height of the list of messages at first, points.
-const LOG_HEIGHT: f32 = 110.0;
+/// Width of a notification, points.
+const TOAST_WIDTH: f32 = 420.0;
 /// Smallest and largest size of the interface, and the step between.
 const SCALES: [f32; 2] = [0.7, 2.0];
 const SCALE_STEP: f32 = 0.1;
@@ -36,11 +36,13 @@ impl App {
             Command::Paint(heat) => state.paint(heat),
             Command::SeeThrough => state.sees_through = !state.sees_through,
             Command::ShowHistory => {
-                let is_shown = state.tab == Tab::History && state.shows_left;
-                state.tab = if is_shown { Tab::Cage } else { Tab::History };
-                state.shows_left = true;
+                let is_shown = state.layout.is_in_front(Pane::History);
+                state.show_pane(if is_shown { Pane::Cage } else { Pane::History });
             }
-            Command::ShowLog => state.shows_log = !state.shows_log,
+            Command::ShowResults if state.layout.is_in_front(Pane::Results) => state.solve.shows_results = false,
+            Command::ShowResults => state.show_pane(Pane::Results),
+            Command::ShowLog if state.layout.is_in_front(Pane::Messages) => state.shows_log = false,
+            Command::ShowLog => state.show_pane(Pane::Messages),
             Command::Theme(theme) => {
                 state.theme = theme;
                 ctx.set_theme(theme);
@@ -65,25 +67,12 @@ impl App {
         let tools = Panel::top("tools").show(ui, |ui| bars::toolbar(ui, facts, out)).response.rect;
         let status = Panel::bottom("status").show(ui, |ui| {
             let workers = Workers { session: &self.session, mesh: &self.mesh, solve: &self.solve };
-            status::ui(ui, workers, &self.messages, &mut self.state, out);
-        });
-        let log = self.state.shows_log.then(|| {
-            let panel = Panel::bottom("log").resizable(true).default_size(LOG_HEIGHT);
-            panel.show(ui, |ui| self.messages.log(ui)).response.rect
-        });
-        let results = self.state.solve.shows_results.then(|| {
-            let panel = Panel::bottom("results").resizable(true).default_size(panel_results::HEIGHT);
-            let shown = panel.size_range(panel_results::HEIGHTS).show(ui, |ui| {
-                let (project, chosen) = (self.session.project(), &mut self.state.solve);
-                panel_results::ui(ui, project, &self.solve, facts, chosen, out);
-            });
-            shown.response.rect
+            status::ui(ui, workers, &self.messages, facts.shows_log, out);
         });
         CentralPanel::default().frame(Frame::NONE).show(ui, |ui| self.panes(ui, facts, out));
-        let panes = self.state.layout.areas().into_iter().map(Some);
-        let below = [results, log, Some(status.response.rect)];
-        self.areas = [Some(menus), Some(tools)].into_iter().chain(panes).chain(below).flatten().collect();
-        results.map_or(0.0, |rect| rect.height()) + log.map_or(0.0, |rect| rect.height())
+        let panes = self.state.layout.areas().into_iter().map(|(_, rect)| rect);
+        self.areas = [menus, tools].into_iter().chain(panes).chain([status.response.rect]).collect();
+        self.state.layout.height_at_corner(TOAST_WIDTH)
     }
 
     /// Gives the keys to the first control of the next panel that has one.
@@ -101,6 +90,21 @@ impl App {
         if let Some(id) = order.filter_map(|k| first_control(ctx, self.areas[k])).next() {
             ctx.memory_mut(|m| m.request_focus(id));
         }
+    }
+}
+
+impl UiState {
+    /// Shows a pane, in front of its tabs wherever it is.
+    pub(super) fn show_pane(&mut self, pane: Pane) {
+        match pane {
+            Pane::View => {}
+            Pane::Cage | Pane::Antenna | Pane::History => self.shows_left = true,
+            Pane::Figures | Pane::Mesh | Pane::Solve => self.shows_right = true,
+            Pane::Results => self.solve.shows_results = true,
+            Pane::Messages => self.shows_log = true,
+        }
+        self.layout.show(&[pane], true);
+        self.layout.bring_forward(pane);
     }
 }
 
@@ -130,6 +134,5 @@ fn reset_layout(ctx: &Context, state: &mut UiState) {
     (state.layout, state.tabs_seen) = (first.layout, None);
     (state.tab, state.right_tab, state.shows_log) = (first.tab, first.right_tab, first.shows_log);
     state.solve.shows_results = first.solve.shows_results;
-    ctx.data_mut(|data| data.remove_by_type::<PanelState>());
     set_scale(ctx, state, first.scale);
 }

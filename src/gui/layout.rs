@@ -5,14 +5,17 @@
 
 use super::ui_state::{RightTab, Tab};
 use egui::{Id, Rect, Vec2};
-use egui_tiles::{Container, LinearDir, Tile, TileId, Tiles, Tree};
+use egui_tiles::{Container, LinearDir, Shares, Tile, TileId, Tiles, Tree};
 use serde::{Deserialize, Serialize};
 
 /// Widths of the sides at first, points: all inputs fit, and 1280 points leave the view the larger half.
 const WIDTHS: [f32; 2] = [312.0, 316.0];
-/// Least width and height of what lies beside or below the view, points, and the greatest part of the room.
-const LEAST: [f32; 2] = [260.0, 160.0];
+/// Heights of the results and of the messages at first, points.
+const HEIGHTS: [f32; 2] = [320.0, 130.0];
+/// Greatest part of the room for what lies beside or below the view.
 const GREATEST: f32 = 0.6;
+/// Part of the free room for what is put beside or below the view.
+const NEW: f32 = 1.0 / 3.0;
 
 /// Something that is shown in a tile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -24,12 +27,15 @@ pub(super) enum Pane {
     Figures,
     Mesh,
     Solve,
+    Results,
+    Messages,
 }
 
 impl Pane {
-    /// The panes that are left of the view at first, and right of it.
+    /// The panes that are left of the view at first, right of it, and below all.
     pub(super) const LEFT: [Self; 3] = [Self::Cage, Self::Antenna, Self::History];
     pub(super) const RIGHT: [Self; 3] = [Self::Figures, Self::Mesh, Self::Solve];
+    pub(super) const BELOW: [Self; 2] = [Self::Results, Self::Messages];
 
     /// Name on its tab, and what it holds.
     pub(super) fn text_and_tip(self) -> (&'static str, &'static str) {
@@ -41,6 +47,17 @@ impl Pane {
             Self::Figures => ("Deformation", "Distortion of the deformed antenna and its compensation"),
             Self::Mesh => ("Mesh", "The tetrahedral mesh of the antenna and the air around it"),
             Self::Solve => ("Solve", "The field: reflection and radiation"),
+            Self::Results => ("Results", "Reflection, patterns and figures of the runs"),
+            Self::Messages => ("Messages", "What was said since the program began"),
+        }
+    }
+
+    /// Least width and height, points: below that nothing can be read.
+    fn least(self) -> [f32; 2] {
+        match self {
+            Self::Results => [300.0, 200.0],
+            Self::Messages => [200.0, 80.0],
+            _ => [260.0, 160.0],
         }
     }
 }
@@ -73,17 +90,22 @@ pub(super) struct Layout {
 }
 
 impl Default for Layout {
-    /// Tabs on both sides of the view.
+    /// Tabs on both sides of the view; results and messages below, over the whole width that the curves need.
     fn default() -> Self {
         let mut tiles = Tiles::default();
-        let [left, view, right] = [&Pane::LEFT[..], &[Pane::View], &Pane::RIGHT].map(|panes| {
+        let [results, messages] = Pane::BELOW;
+        let groups = [&Pane::LEFT[..], &[Pane::View], &Pane::RIGHT, &[results], &[messages]];
+        let [left, view, right, results, messages] = groups.map(|panes| {
             let children = panes.iter().map(|pane| tiles.insert_pane(*pane)).collect();
             tiles.insert_tab_tile(children)
         });
-        let root = tiles.insert_horizontal_tile(vec![left, view, right]);
-        if let Some(Tile::Container(Container::Linear(linear))) = tiles.get_mut(root) {
-            linear.shares.set_share(left, WIDTHS[0]);
-            linear.shares.set_share(right, WIDTHS[1]);
+        let row = tiles.insert_horizontal_tile(vec![left, view, right]);
+        let root = tiles.insert_vertical_tile(vec![row, results, messages]);
+        for (of, [first, second], sizes) in [(row, [left, right], WIDTHS), (root, [results, messages], HEIGHTS)] {
+            if let Some(Tile::Container(Container::Linear(linear))) = tiles.get_mut(of) {
+                linear.shares.set_share(first, sizes[0]);
+                linear.shares.set_share(second, sizes[1]);
+            }
         }
         Self { tree: Tree::new(Id::unique("panes"), root, tiles) }
     }
@@ -92,23 +114,28 @@ impl Default for Layout {
 impl Layout {
     /// Whether each pane is there once: what another version kept may be of other panes.
     pub(super) fn is_sound(&self) -> bool {
-        let mut found = Vec::new();
-        let mut open: Vec<TileId> = self.tree.root().into_iter().collect();
-        let mut left = self.tree.tiles.len();
-        while let Some(id) = open.pop() {
-            if left == 0 {
-                return false;
-            }
-            left -= 1;
-            match self.tree.tiles.get(id) {
-                Some(Tile::Pane(pane)) => found.push(*pane),
-                Some(Tile::Container(container)) => open.extend(container.children()),
-                None => return false,
-            }
-        }
-        let all = Pane::LEFT.into_iter().chain(Pane::RIGHT).chain([Pane::View]);
+        let Some(tiles) = self.in_order() else { return false };
+        let found: Vec<Pane> = tiles.into_iter().filter_map(|id| self.tree.tiles.get_pane(&id).copied()).collect();
+        let all = Pane::LEFT.into_iter().chain(Pane::RIGHT).chain(Pane::BELOW).chain([Pane::View]);
         let each_once = all.clone().all(|pane| found.iter().filter(|p| **p == pane).count() == 1);
         each_once && found.len() == all.count()
+    }
+
+    /// All tiles as they are read, from left to right and from top to bottom; `None` if it is no tree.
+    fn in_order(&self) -> Option<Vec<TileId>> {
+        let mut found = Vec::new();
+        let mut open: Vec<TileId> = self.tree.root().into_iter().collect();
+        while let Some(id) = open.pop() {
+            if found.len() == self.tree.tiles.len() {
+                return None;
+            }
+            found.push(id);
+            if let Tile::Container(container) = self.tree.tiles.get(id)? {
+                let children: Vec<TileId> = container.children().copied().collect();
+                open.extend(children.into_iter().rev());
+            }
+        }
+        Some(found)
     }
 
     /// The tile of a pane.
@@ -133,13 +160,31 @@ impl Layout {
         }
     }
 
-    /// Where the panes in front are with their tabs, from left to right.
-    pub(super) fn areas(&self) -> Vec<Rect> {
-        let in_front = self.tree.active_tiles().into_iter().filter(|id| self.tree.tiles.get_pane(id).is_some());
-        let with_tabs = in_front.map(|id| self.tree.tiles.parent_of(id).unwrap_or(id));
-        let mut areas: Vec<Rect> = with_tabs.filter_map(|id| self.tree.tiles.rect(id)).collect();
-        areas.sort_by(|a, b| a.left().total_cmp(&b.left()).then(a.top().total_cmp(&b.top())));
-        areas
+    /// The panes in front and where they are with their tabs, in the order in which they are read.
+    pub(super) fn areas(&self) -> Vec<(Pane, Rect)> {
+        let active = self.tree.active_tiles();
+        let shown = self.in_order().unwrap_or_default().into_iter().filter(|id| active.contains(id));
+        let area = |id: TileId| {
+            let pane = self.tree.tiles.get_pane(&id)?;
+            let with_tabs = self.tree.tiles.parent_of(id).unwrap_or(id);
+            Some((*pane, self.tree.tiles.rect(with_tabs)?))
+        };
+        shown.filter_map(area).collect()
+    }
+
+    /// How far results and messages reach up from the lower left corner, where notifications appear, points.
+    pub(super) fn height_at_corner(&self, width: f32) -> f32 {
+        let areas = self.areas();
+        let whole = areas.iter().fold(Rect::NOTHING, |whole, (_, rect)| whole.union(*rect));
+        let mut top = whole.bottom();
+        // From the lowest up, as long as they lie upon each other.
+        for (_, rect) in areas.iter().rev().filter(|(pane, _)| Pane::BELOW.contains(pane)) {
+            let is_next = (rect.bottom() - top).abs() < 4.0 && rect.left() < whole.left() + width;
+            if is_next && rect.height() <= GREATEST * whole.height() {
+                top = rect.top();
+            }
+        }
+        (whole.bottom() - top).max(0.0)
     }
 
     /// Gives whatever lies around the view the size it had, and the view the rest of `size`; `gap` is between tiles.
@@ -147,25 +192,52 @@ impl Layout {
         let mut at = self.tree.root();
         while let Some(id) = at {
             let Some(inner) = self.child_with_view(id) else { return };
-            let shown: Vec<TileId> = match self.tree.tiles.get_container(id) {
-                Some(container) => {
-                    container.children().copied().filter(|c| self.tree.tiles.is_visible_in_layout(*c)).collect()
-                }
-                None => return,
-            };
-            if let Some(Tile::Container(Container::Linear(linear))) = self.tree.tiles.get_mut(id) {
+            let Some(container) = self.tree.tiles.get_container(id) else { return };
+            let shown = container.children().copied().filter(|c| self.tree.tiles.is_visible_in_layout(*c));
+            let others: Vec<TileId> = shown.filter(|c| *c != inner).collect();
+            if let Container::Linear(linear) = container {
                 let along = usize::from(linear.dir == LinearDir::Vertical);
-                let room = size[along] - gap * (shown.len().saturating_sub(1)) as f32;
-                let mut rest = room;
-                for &other in shown.iter().filter(|c| **c != inner) {
-                    let share = linear.shares[other].clamp(LEAST[along], (GREATEST * room).max(LEAST[along]));
-                    linear.shares.set_share(other, share);
-                    rest -= share;
+                let room = (size[along] - gap * others.len() as f32).max(0.0);
+                let sizes = self.sizes(&linear.shares, &others, (inner, room), along);
+                size[along] = room - sizes.iter().sum::<f32>();
+                if let Some(Tile::Container(Container::Linear(linear))) = self.tree.tiles.get_mut(id) {
+                    for (other, size) in others.into_iter().zip(sizes) {
+                        linear.shares.set_share(other, size);
+                    }
+                    linear.shares.set_share(inner, size[along]);
                 }
-                linear.shares.set_share(inner, rest.max(LEAST[along].min(room)));
             }
-            size = self.tree.tiles.rect(inner).map_or(size, |rect| rect.size());
             at = Some(inner);
+        }
+    }
+
+    /// Sizes of the tiles around that of the view, which leave it its least in the room there is, points.
+    fn sizes(&self, kept: &Shares, others: &[TileId], (view, room): (TileId, f32), along: usize) -> Vec<f32> {
+        let share = |id: TileId| kept.iter().find(|(other, _)| **other == id).map(|(_, share)| *share);
+        let taken: f32 = others.iter().filter_map(|id| share(*id)).sum();
+        let wanted = others.iter().map(|&id| {
+            let least = self.least(id, along);
+            share(id).unwrap_or(NEW * (room - taken)).clamp(least, (GREATEST * room).max(least))
+        });
+        let wanted: Vec<f32> = wanted.collect();
+        let most = (room - self.least(view, along)).max(room * (1.0 - GREATEST));
+        let fit = (most / wanted.iter().sum::<f32>()).min(1.0);
+        wanted.into_iter().map(|size| fit * size).collect()
+    }
+
+    /// Least size of a tile along the width (0) or the height (1), points.
+    fn least(&self, id: TileId, along: usize) -> f32 {
+        match self.tree.tiles.get(id) {
+            None => 0.0,
+            Some(Tile::Pane(pane)) => pane.least()[along],
+            Some(Tile::Container(container)) => {
+                let shown = container.children().filter(|c| self.tree.tiles.is_visible_in_layout(**c));
+                let least = shown.map(|child| self.least(*child, along));
+                match container {
+                    Container::Linear(linear) if usize::from(linear.dir == LinearDir::Vertical) == along => least.sum(),
+                    _ => least.fold(0.0, f32::max),
+                }
+            }
         }
     }
 
@@ -208,20 +280,56 @@ mod tests {
         assert!(!twice.is_sound(), "one is there twice");
     }
 
+    /// Sizes of the children of the container that some panes lie in, as they were kept last.
+    fn shares(layout: &Layout, pane: Pane) -> Vec<f32> {
+        let tabs = layout.tile(pane).and_then(|tile| layout.tree.tiles.parent_of(tile)).expect("it has tabs");
+        let parent = layout.tree.tiles.parent_of(tabs).expect("beside others");
+        let Some(Container::Linear(linear)) = layout.tree.tiles.get_container(parent) else { panic!("a row") };
+        linear.children.iter().map(|c| linear.shares[*c]).collect()
+    }
+
     #[test]
     fn the_sides_keep_their_widths_and_the_view_takes_the_rest() {
         let mut layout = Layout::default();
-        let shares = |layout: &Layout| {
-            let root = layout.tree.root().expect("a tree");
-            let Some(Container::Linear(linear)) = layout.tree.tiles.get_container(root) else { panic!("a row") };
-            linear.children.iter().map(|c| linear.shares[*c]).collect::<Vec<f32>>()
-        };
+        layout.show(&Pane::BELOW, false);
         for width in [1920.0, 1280.0] {
             layout.keep_sizes(vec2(width, 700.0), 1.0);
-            assert_eq!(shares(&layout), [312.0, width - 2.0 - 628.0, 316.0], "{width} points wide");
+            assert_eq!(shares(&layout, Pane::View), [312.0, width - 2.0 - 628.0, 316.0], "{width} points wide");
         }
         layout.show(&Pane::LEFT, false);
         layout.keep_sizes(vec2(1280.0, 700.0), 1.0);
-        assert_eq!(shares(&layout)[1..], [1280.0 - 1.0 - 316.0, 316.0], "the left side is folded away");
+        assert_eq!(shares(&layout, Pane::View)[1..], [1280.0 - 1.0 - 316.0, 316.0], "the left side is folded away");
+    }
+
+    #[test]
+    fn what_lies_below_keeps_its_height_and_leaves_the_view_some() {
+        let mut layout = Layout::default();
+        let heights = |layout: &Layout| shares(layout, Pane::Results);
+        layout.show(&Pane::BELOW, true);
+        layout.keep_sizes(vec2(1280.0, 702.0), 1.0);
+        assert_eq!(heights(&layout), [250.0, 320.0, 130.0], "both below");
+        for _ in 0..50 {
+            layout.keep_sizes(vec2(1280.0, 502.0), 1.0);
+        }
+        let [view, results, messages] = heights(&layout)[..] else { panic!("three") };
+        assert!(
+            view >= 159.0 && results >= 199.0 && messages >= 79.0,
+            "in a low window: {view}, {results}, {messages}"
+        );
+        assert!((view + results + messages - 500.0).abs() < 0.1, "all the room: {view}, {results}, {messages}");
+    }
+
+    #[test]
+    fn what_is_put_below_the_view_gets_a_third() {
+        let mut layout = Layout::default();
+        layout.show(&Pane::BELOW, false);
+        let history = layout.tile(Pane::History).expect("it is there");
+        let root = layout.tree.root().expect("a tree");
+        layout.tree.move_tile_to_container(history, root, 1, false);
+        layout
+            .tree
+            .simplify(&egui_tiles::SimplificationOptions { all_panes_must_have_tabs: true, ..Default::default() });
+        layout.keep_sizes(vec2(1280.0, 601.0), 1.0);
+        assert_eq!(shares(&layout, Pane::History)[..2], [400.0, 200.0], "a third of the height");
     }
 }

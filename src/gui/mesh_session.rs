@@ -3,6 +3,7 @@
 //! Nothing here draws. A mesh stays on show until another one takes its place, even when its project has gone on or a
 //! new attempt fails or is called off; whether it still fits is a comparison of projects.
 
+use super::places::Refusal;
 use super::ui_state::MeshUi;
 use crate::pipeline::mesh_job::{MeshJob, MeshRequest, ReadyMesh};
 use crate::pipeline::{Density, MeshSettings, Shape};
@@ -52,7 +53,7 @@ pub(super) enum MeshNews {
 pub(super) struct MeshSession {
     job: MeshJob,
     shown: Option<ShownMesh>,
-    error: Option<String>,
+    error: Option<Refusal>,
     serial: u64,
 }
 
@@ -68,8 +69,8 @@ impl MeshSession {
     }
 
     /// Why the last attempt has no mesh.
-    pub(super) fn error(&self) -> Option<&str> {
-        self.error.as_deref()
+    pub(super) fn error(&self) -> Option<&Refusal> {
+        self.error.as_ref()
     }
 
     /// Whether a mesh is being made.
@@ -113,8 +114,8 @@ impl MeshSession {
                 Some(news)
             }
             Err(error) => {
-                let text = error.to_string();
-                self.error = Some(text.clone());
+                let refusal = Refusal::new(&error, reply.request.project, reply.request.shape);
+                let text = self.error.insert(refusal).text.clone();
                 Some(MeshNews::Failed(text))
             }
         }

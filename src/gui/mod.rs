@@ -67,6 +67,7 @@ mod panel_vertices;
 mod panes;
 mod pattern_scene;
 mod picture;
+mod places;
 mod play;
 mod plot_export;
 mod plot_s11;

@@ -1,7 +1,7 @@
 //! Import of the patch's outline from a drawing.
 
 use super::dialogs::{PathField, Purpose, problem_with};
-use super::field::rows;
+use super::field::{Choices, rows};
 use super::outbox::{Action, Outbox};
 use super::theme::Tokens;
 use super::ui_state::UiState;
@@ -82,7 +82,7 @@ impl OutlineDialog {
         let tip = "What a number in the drawing means";
         let label = ui.label("Unit").on_hover_text(tip);
         let name = self.unit.map_or("as the file says", |k| LENGTH_UNITS[k].0);
-        let combo = ComboBox::from_id_salt("unit").width(150.0).selected_text(name).show_ui(ui, |ui| {
+        let combo = ComboBox::from_id_salt("unit").width(150.0).selected_text(name).show_list(ui, |ui| {
             ui.selectable_value(&mut self.unit, None, "as the file says");
             for (k, (name, _)) in LENGTH_UNITS.iter().enumerate() {
                 ui.selectable_value(&mut self.unit, Some(k), *name);

@@ -76,8 +76,8 @@ pub(super) fn angle_bar() -> Bar {
     Bar { map: ColorMap::Viridis, title: "Smallest dihedral angle".to_owned(), ticks }
 }
 
-/// Marks the places where a refused shape crosses itself.
-pub(super) fn crossings(ui: &Ui, rect: Rect, view: &View, places: impl Iterator<Item = Vec3>) {
+/// Marks the places where what was refused fails.
+pub(super) fn places(ui: &Ui, rect: Rect, view: &View, places: impl Iterator<Item = Vec3>) {
     let painter = ui.painter().with_clip_rect(rect);
     let tokens = Tokens::here(ui);
     for seen in places.filter_map(|place| view.project(place)) {

@@ -1,6 +1,6 @@
 //! Which compensation is applied, and how its iterations converge.
 
-use super::field::{Number, Refused, rows};
+use super::field::{Choices, Number, Refused, rows};
 use super::outbox::Outbox;
 use super::panel_distortion::ROW_HEIGHT;
 use super::session::Session;
@@ -82,7 +82,7 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, refused: Refused<'_>, out: &mut
 fn scope(ui: &mut Ui, settings: &mut Settings) {
     let label = ui.label("Scale");
     let text = |scope| if scope == ScopeSpec::Whole { "Whole antenna" } else { "Patch alone" };
-    let combo = ComboBox::from_id_salt("scope").selected_text(text(settings.scope)).show_ui(ui, |ui| {
+    let combo = ComboBox::from_id_salt("scope").selected_text(text(settings.scope)).show_list(ui, |ui| {
         for scope in [ScopeSpec::Whole, ScopeSpec::Patch] {
             ui.selectable_value(&mut settings.scope, scope, text(scope));
         }

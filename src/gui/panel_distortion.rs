@@ -1,27 +1,26 @@
 //! The figures of the deformed antenna beside those of the exact cylinder, and what is painted on it.
 
+use super::places;
 use super::session::Session;
 use super::theme::Tokens;
 use super::ui_state::UiState;
 use crate::distortion::Figures;
-use crate::geometry::DVec3;
 use crate::units::to_mm;
 use egui::{Grid, RichText, Ui};
 
 /// How far a relative error may go before it is marked, as a fraction: good below the first, bad above the second.
 const MARKS: [f64; 2] = [0.005, 0.02];
 
-/// Places listed where a shape crosses itself: the others lie beside them.
-const MAX_LISTED: usize = 6;
-/// Distance of the eye from such a place, mm.
-const NEAR: f32 = 12.0;
-
 /// Height of the rows of tables that hold text alone, points.
 pub(super) const ROW_HEIGHT: f32 = 16.0;
 
 /// Draws the panel.
 pub(super) fn ui(ui: &mut Ui, session: &Session, state: &mut UiState) {
-    crossings(ui, session.crossings_mm(), state);
+    if !session.places_mm().is_empty() {
+        let text = "The refused shape fails at the marked places:";
+        ui.add(egui::Label::new(RichText::new(text).color(Tokens::here(ui).error)).wrap());
+        places::list(ui, session.places_mm(), state);
+    }
     let Some(shown) = session.shown() else {
         let text =
             if session.is_busy() { "Computing the deformed antenna…" } else { "There is no deformed antenna yet." };
@@ -47,29 +46,6 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, state: &mut UiState) {
             ui.add(egui::Label::new(RichText::new(text).weak()).wrap());
         }
     }
-}
-
-/// Tells where a refused shape crosses itself, with a button that goes there.
-fn crossings(ui: &mut Ui, places_mm: &[[f64; 3]], state: &mut UiState) {
-    if places_mm.is_empty() {
-        return;
-    }
-    let text = "The refused shape crosses itself at the marked places:";
-    ui.add(egui::Label::new(RichText::new(text).color(Tokens::here(ui).error)).wrap());
-    ui.horizontal_wrapped(|ui| {
-        for (k, &[x, y, z]) in places_mm.iter().enumerate().take(MAX_LISTED) {
-            let button = ui.small_button(format!("{x:.1}, {y:.1}, {z:.1} mm"));
-            if button.on_hover_text(format!("Look at place {}", k + 1)).clicked() {
-                state.show_mesh(false);
-                state.fit = false;
-                state.camera.target = DVec3::new(x, y, z).as_vec3();
-                state.camera.distance = NEAR;
-            }
-        }
-        if places_mm.len() > MAX_LISTED {
-            ui.label(RichText::new(format!("and {} more", places_mm.len() - MAX_LISTED)).weak());
-        }
-    });
 }
 
 /// One line of the table: name, tooltip, text from figures, and the relative error that decides the colour.

@@ -1,5 +1,6 @@
 //! What is painted on the antenna: quantity, part, range, and its histogram.
 
+use super::field::Choices;
 use super::heat::{Heated, N_BINS};
 use super::outbox::Outbox;
 use super::plot_export;
@@ -39,7 +40,7 @@ pub(super) fn ui(ui: &mut Ui, heated: Option<&Heated>, has_cylinder: bool, state
 fn choices(ui: &mut Ui, has_cylinder: bool, state: &mut UiState) {
     ui.horizontal(|ui| {
         let label = ui.label("Paint");
-        let combo = ComboBox::from_id_salt("heat").width(132.0).selected_text(state.heat.text()).show_ui(ui, |ui| {
+        let combo = ComboBox::from_id_salt("heat").width(132.0).selected_text(state.heat.text()).show_list(ui, |ui| {
             for heat in Heat::ALL {
                 let button = egui::Button::selectable(state.heat == heat, heat.text());
                 let response = ui.add_enabled(heat != Heat::Distance || has_cylinder, button).on_hover_text(heat.tip());
@@ -54,7 +55,7 @@ fn choices(ui: &mut Ui, has_cylinder: bool, state: &mut UiState) {
         }
         let label = ui.label("on");
         let part = ComboBox::from_id_salt("heat part").width(76.0).selected_text(state.heat_part.text());
-        let part = part.show_ui(ui, |ui| {
+        let part = part.show_list(ui, |ui| {
             for part in HeatPart::ALL {
                 ui.selectable_value(&mut state.heat_part, part, part.text());
             }

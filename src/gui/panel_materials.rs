@@ -1,6 +1,6 @@
 //! What the antenna is made of: dielectrics and metals by name or by number, and resistors through the substrate.
 
-use super::field::{Number, Refused, symbol_button};
+use super::field::{Choices, Number, Refused, symbol_button};
 use super::outbox::{Action, Outbox};
 use super::theme::Tokens;
 use crate::project::materials::{DIELECTRICS, METALS};
@@ -27,7 +27,7 @@ pub(super) fn dielectric(
 ) {
     let name = if current.name.is_empty() { CUSTOM } else { &current.name };
     let named = ui.label(label).on_hover_text(tip);
-    let combo = ComboBox::from_id_salt(label).width(LIST_WIDTH).height(320.0).selected_text(name).show_ui(ui, |ui| {
+    let combo = ComboBox::from_id_salt(label).width(LIST_WIDTH).height(320.0).selected_text(name).show_list(ui, |ui| {
         let mut entry = |ui: &mut Ui, material: MaterialSpec, note: &str| {
             let values = format!("εr {}, tan δ {}", material.eps_r, material.tan_delta);
             let tip = if note.is_empty() { values } else { format!("{values}\n{note}") };
@@ -97,7 +97,7 @@ pub(super) fn metal(
         MetalSpec::Sheet { name, .. } => name,
     };
     let named = ui.label(label).on_hover_text(tip);
-    let combo = ComboBox::from_id_salt(label).width(LIST_WIDTH).selected_text(name).show_ui(ui, |ui| {
+    let combo = ComboBox::from_id_salt(label).width(LIST_WIDTH).selected_text(name).show_list(ui, |ui| {
         let mut entry = |ui: &mut Ui, text: &str, metal: MetalSpec, tip: String| {
             if ui.selectable_label(name == text, text).on_hover_text(tip).clicked() && metal != *current {
                 out.edit(place, edit(metal));

@@ -1,10 +1,11 @@
 //! The tetrahedral mesh: what is meshed, how it is looked at, and how good it is.
 
 use super::command::{Command, Facts};
-use super::field::rows;
+use super::field::{Choices, rows};
 use super::mesh_session::{MeshSession, ShownMesh, density_text, grouped, has_cylinder, metal_text, shape_text};
 use super::outbox::{Action, Outbox};
 use super::panel_distortion::ROW_HEIGHT;
+use super::places;
 use super::plot_export;
 use super::plots::PlotKind;
 use super::theme::Tokens;
@@ -47,8 +48,9 @@ pub(super) fn ui(
     }
     let tokens = Tokens::here(ui);
     if let Some(error) = mesh.error() {
-        let text = RichText::new(format!("No mesh was made: {error}")).color(tokens.error);
+        let text = RichText::new(format!("No mesh was made: {}", error.text)).color(tokens.error);
         ui.add(egui::Label::new(text).wrap());
+        places::list(ui, error.places_mm(project), state);
     }
     let Some(shown) = mesh.shown() else {
         if !mesh.is_busy() && mesh.error().is_none() {
@@ -91,7 +93,7 @@ pub(super) fn choice<T: Copy + PartialEq>(
     possible: impl Fn(T) -> Result<(), &'static str>,
 ) {
     let label = ui.label(name).on_hover_text(tip);
-    let combo = ComboBox::from_id_salt(name).width(130.0).selected_text(text(*value).0).show_ui(ui, |ui| {
+    let combo = ComboBox::from_id_salt(name).width(130.0).selected_text(text(*value).0).show_list(ui, |ui| {
         for &one in all {
             let (text, tip) = text(one);
             let button = egui::Button::selectable(*value == one, text);
@@ -304,7 +306,6 @@ fn worst(ui: &mut Ui, shown: &ShownMesh, state: &mut UiState) {
 /// Brings a cell before the eye: the mesh is cut where it begins, on the side that the eye is on.
 fn show_cell(shown: &ShownMesh, index: usize, cell: &WorstCell, state: &mut UiState) {
     state.show_mesh(true);
-    state.fit = false;
     let region = &shown.ready.meshed.mesh.regions[cell.region.index()];
     let view = &mut state.mesh;
     view.chosen = Some(index);
@@ -318,6 +319,5 @@ fn show_cell(shown: &ShownMesh, index: usize, cell: &WorstCell, state: &mut UiSt
     // Rounded to a micrometre so that the slider reads well, and away from the cell, which stays.
     let place = to_mm(cell.at[view.axis]) * 1e3;
     view.place_mm = if view.flipped { place.ceil() } else { place.floor() } / 1e3;
-    state.camera.target = (cell.at * to_mm(1.0)).as_vec3();
-    state.camera.distance = (EYE_DISTANCE * to_mm(cell.quality.edge_max)) as f32;
+    state.look_at((cell.at * to_mm(1.0)).as_vec3(), (EYE_DISTANCE * to_mm(cell.quality.edge_max)) as f32);
 }

@@ -5,6 +5,7 @@ use super::field::{Number, rows, symbol_button};
 use super::mesh_session::grouped;
 use super::outbox::{Action, Outbox};
 use super::panel_mesh::{choice, heading, shape_and_density};
+use super::places;
 use super::solve_session::SolveSession;
 use super::theme::Tokens;
 use super::ui_state::{SolveUi, Stop, UiState};
@@ -59,8 +60,9 @@ pub(super) fn ui(
     }
     let tokens = Tokens::here(ui);
     if let Some(error) = solve.error() {
-        let text = RichText::new(format!("No result: {error}")).color(tokens.error);
+        let text = RichText::new(format!("No result: {}", error.text)).color(tokens.error);
         ui.add(egui::Label::new(text).wrap());
+        places::list(ui, error.places_mm(project), state);
     }
     if solve.runs().is_empty() {
         if !solve.is_busy() && solve.error().is_none() {

@@ -10,7 +10,7 @@ use super::ui_state::{RightTab, Tab};
 use super::viewport::Sources;
 use super::{
     panel_antenna, panel_cage, panel_compare, panel_compensation, panel_distortion, panel_heat, panel_history,
-    panel_mesh, panel_solve,
+    panel_mesh, panel_results, panel_solve,
 };
 use egui::{
     Color32, Frame, Id, Margin, Response, ScrollArea, Stroke, Style, Ui, Visuals, WidgetRect, WidgetText, accesskit,
@@ -39,6 +39,8 @@ impl App {
         let mut layout = std::mem::take(&mut self.state.layout);
         layout.show(&Pane::LEFT, self.state.shows_left);
         layout.show(&Pane::RIGHT, self.state.shows_right);
+        layout.show(&[Pane::Results], self.state.solve.shows_results);
+        layout.show(&[Pane::Messages], self.state.shows_log);
         // What was asked for since the last frame comes forward.
         let asked = (self.state.tab, self.state.right_tab);
         if self.state.tabs_seen != Some(asked) {
@@ -72,7 +74,11 @@ impl App {
         let preview = self.state.preview.filter(|_| mesh.is_none());
         let on_show = self.compare.on_show_or(&self.session, preview);
         let pose = preview.and_then(|mode| self.compare.pose(mode)).or(own.as_ref());
-        let sources = Sources { session: &self.session, pose, mesh, solve, on_show, preview };
+        let project = self.session.project();
+        let refusals = [self.mesh.error(), self.solve.error()].into_iter().flatten();
+        let places = refusals.flat_map(|refusal| refusal.places_mm(project)).chain(self.session.places_mm());
+        let places_mm: Vec<[f64; 3]> = places.copied().collect();
+        let sources = Sources { session: &self.session, pose, mesh, solve, on_show, preview, places_mm: &places_mm };
         self.viewport.ui(ui, sources, &mut self.state, out);
     }
 
@@ -87,6 +93,8 @@ impl App {
             Pane::Figures => self.figures(ui, facts, out),
             Pane::Mesh => panel_mesh::ui(ui, project, &self.mesh, facts, &mut self.state, out),
             Pane::Solve => panel_solve::ui(ui, project, &mut self.solve, facts, &mut self.state, out),
+            Pane::Results => panel_results::ui(ui, project, &self.solve, facts, &mut self.state.solve, out),
+            Pane::Messages => self.messages.log(ui),
         }
     }
 
@@ -134,9 +142,14 @@ impl Behavior<Pane> for Panes<'_> {
         } else {
             let frame = Frame::new().fill(self.tokens.panel).inner_margin(Margin::symmetric(8, 6));
             frame.show(ui, |ui| {
-                ScrollArea::vertical().auto_shrink(false).id_salt(*pane).show(ui, |ui| {
-                    self.app.pane(ui, *pane, self.facts, self.out);
-                });
+                let mut content = |ui: &mut Ui| self.app.pane(ui, *pane, self.facts, self.out);
+                if Pane::BELOW.contains(pane) {
+                    // They fill the room there is and scroll what needs it.
+                    ui.set_min_size(ui.available_size());
+                    content(ui);
+                } else {
+                    ScrollArea::vertical().auto_shrink(false).id_salt(*pane).show(ui, content);
+                }
             });
         }
         UiResponse::None

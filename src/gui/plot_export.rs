@@ -1,5 +1,6 @@
 //! Saves a plot as SVG, PNG or CSV.
 
+use super::field::Choices;
 use super::file_field::{FileField, Pressed};
 use super::outbox::{Action, Outbox};
 use super::plots::PlotKind;
@@ -38,7 +39,7 @@ impl PlotExport {
         let label = ui.label("Plot");
         let text = |k: usize| self.plots[k].0.text();
         let combo = ComboBox::from_id_salt("plot").width(260.0).selected_text(text(self.chosen));
-        let combo = combo.show_ui(ui, |ui| {
+        let combo = combo.show_list(ui, |ui| {
             for (k, (kind, _)) in self.plots.iter().enumerate() {
                 ui.selectable_value(&mut self.chosen, k, kind.text());
             }

@@ -1,6 +1,6 @@
 //! The numbers of each preset: names, units, sliders and the values they start with.
 
-use super::field::{Number, Refused, rows};
+use super::field::{Choices, Number, Refused, rows};
 use super::outbox::Outbox;
 use crate::project::{BendPlane, Edit, PresetEntry, PresetSpec, RuleSpec};
 use egui::{ComboBox, Ui};
@@ -56,7 +56,7 @@ fn bend_choices(ui: &mut Ui, index: usize, entry: PresetEntry, out: &mut Outbox)
         let before = (plane, rule);
         let label = ui.label("Plane");
         let text = if plane == BendPlane::H { "H (width curves)" } else { "E (length curves)" };
-        let combo = ComboBox::from_id_salt("plane").selected_text(text).show_ui(ui, |ui| {
+        let combo = ComboBox::from_id_salt("plane").selected_text(text).show_list(ui, |ui| {
             ui.selectable_value(&mut plane, BendPlane::H, "H (width curves)");
             ui.selectable_value(&mut plane, BendPlane::E, "E (length curves)");
         });
@@ -64,7 +64,7 @@ fn bend_choices(ui: &mut Ui, index: usize, entry: PresetEntry, out: &mut Outbox)
         ui.end_row();
         let label = ui.label("Cage rule");
         let text = if rule == RuleSpec::Tangent { "Tangent" } else { "Arc" };
-        let combo = ComboBox::from_id_salt("rule").selected_text(text).show_ui(ui, |ui| {
+        let combo = ComboBox::from_id_salt("rule").selected_text(text).show_list(ui, |ui| {
             let tip = "Cage segments touch the cylinder: nearly independent of their number";
             ui.selectable_value(&mut rule, RuleSpec::Tangent, "Tangent").on_hover_text(tip);
             ui.selectable_value(&mut rule, RuleSpec::Arc, "Arc").on_hover_text("Cage vertices lie on the cylinder");

@@ -1,5 +1,6 @@
 //! Export of a run's curves as one file for other programs.
 
+use super::field::Choices;
 use super::file_field::{FileField, Pressed};
 use super::outbox::{Action, Outbox};
 use super::solve_session::{FinishedRun, SolveSession};
@@ -101,7 +102,7 @@ impl ResultExport {
         ui.add_space(6.0);
         let label = ui.label("Run");
         let combo = ComboBox::from_id_salt("run").width(240.0).selected_text(&self.runs[self.chosen].name);
-        let combo = combo.show_ui(ui, |ui| {
+        let combo = combo.show_list(ui, |ui| {
             for (k, run) in self.runs.iter().enumerate() {
                 ui.selectable_value(&mut self.chosen, k, &run.name);
             }

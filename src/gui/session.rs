@@ -67,8 +67,8 @@ pub(super) struct Session {
     shown: Option<Shown>,
     pose: Option<(Project, Pose)>,
     refused: Option<String>,
-    /// Where the last refused shape crosses itself, mm; until something is changed.
-    crossings_mm: Vec<[f64; 3]>,
+    /// Where the last refused shape fails, mm; until something is changed.
+    places_mm: Vec<[f64; 3]>,
     in_gesture: bool,
     guarded: bool,
     serial: u64,
@@ -92,7 +92,7 @@ impl Session {
             shown: None,
             pose: None,
             refused: None,
-            crossings_mm: Vec::new(),
+            places_mm: Vec::new(),
             in_gesture: false,
             guarded: false,
             serial: 0,
@@ -132,9 +132,9 @@ impl Session {
         self.refused.as_deref()
     }
 
-    /// Where the last refused shape crosses itself, mm.
-    pub(super) fn crossings_mm(&self) -> &[[f64; 3]] {
-        &self.crossings_mm
+    /// Where the last refused shape fails, mm.
+    pub(super) fn places_mm(&self) -> &[[f64; 3]] {
+        &self.places_mm
     }
 
     /// Whether a gesture is under way.
@@ -208,7 +208,7 @@ impl Session {
     /// Changes the project.
     pub(super) fn apply(&mut self, edit: Edit) -> Result<(), EditError> {
         self.guarded = false;
-        self.crossings_mm.clear();
+        self.places_mm.clear();
         self.play = Play::default();
         self.history.apply(edit)
     }
@@ -230,7 +230,7 @@ impl Session {
 
     fn step(&mut self, step: impl FnOnce(&mut History) -> bool) {
         step(&mut self.history);
-        self.crossings_mm.clear();
+        self.places_mm.clear();
         self.play = Play::default();
         self.in_gesture = false;
         self.guarded = false;
@@ -241,7 +241,7 @@ impl Session {
         self.history.replace(project);
         self.play = Play::default();
         self.path = path;
-        self.crossings_mm.clear();
+        self.places_mm.clear();
         self.in_gesture = false;
         self.guarded = false;
         self.refused = None;
@@ -321,7 +321,7 @@ impl Session {
             Err(PipelineError::Cancelled(_)) => None,
             Err(error) => {
                 let message = error.to_string();
-                self.crossings_mm = error.crossings_mm().to_vec();
+                self.places_mm = error.places_mm();
                 let is_full = sent.quality == Quality::Full;
                 if is_full && std::mem::take(&mut self.guarded) && sent.project == *self.history.project() {
                     self.take_back(reply.retreat.as_deref());

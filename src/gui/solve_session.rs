@@ -4,6 +4,7 @@
 //! has gone on or a new run fails or is called off; whether one still fits is a comparison of projects.
 
 use super::mesh_session::grouped;
+use super::places::Refusal;
 use super::theme::N_SERIES;
 use super::ui_state::{SolveUi, Stop};
 use crate::io::IoError;
@@ -62,7 +63,7 @@ pub(super) struct SolveSession {
     /// What the last estimate was for, and the estimate.
     estimate: Option<(SolveRequest, Result<Estimate, String>)>,
     started: Option<Instant>,
-    error: Option<String>,
+    error: Option<Refusal>,
     serial: u64,
 }
 
@@ -98,8 +99,8 @@ impl SolveSession {
     }
 
     /// Why the last attempt has no result.
-    pub(super) fn error(&self) -> Option<&str> {
-        self.error.as_deref()
+    pub(super) fn error(&self) -> Option<&Refusal> {
+        self.error.as_ref()
     }
 
     /// Whether a run is under way.
@@ -252,8 +253,8 @@ impl SolveSession {
                 Some(news)
             }
             Err(error) => {
-                let text = error.to_string();
-                self.error = Some(text.clone());
+                let refusal = Refusal::new(&error, reply.request.project, reply.request.shape);
+                let text = self.error.insert(refusal).text.clone();
                 Some(SolveNews::Failed(text))
             }
         }

@@ -6,7 +6,6 @@ use super::outbox::{Action, Outbox};
 use super::session::Session;
 use super::solve_session::SolveSession;
 use super::theme::Tokens;
-use super::ui_state::UiState;
 use crate::task::Progress;
 use egui::{ProgressBar, RichText, ScrollArea, Ui};
 use egui_notify::{Anchor, Toasts};
@@ -78,7 +77,6 @@ impl Messages {
     pub(super) fn log(&self, ui: &mut Ui) {
         let tokens = Tokens::here(ui);
         ui.horizontal(|ui| {
-            ui.strong("Messages");
             let tip = "Copy all messages, for a report";
             let button = ui.add_enabled(!self.list.is_empty(), egui::Button::new("Copy all").small());
             if button.on_hover_text(tip).clicked() {
@@ -138,7 +136,7 @@ pub(super) struct Workers<'a> {
 }
 
 /// Draws the status line.
-pub(super) fn ui(ui: &mut Ui, workers: Workers<'_>, messages: &Messages, state: &mut UiState, out: &mut Outbox) {
+pub(super) fn ui(ui: &mut Ui, workers: Workers<'_>, messages: &Messages, shows_log: bool, out: &mut Outbox) {
     let session = workers.session;
     ui.horizontal(|ui| {
         deformation(ui, session, out);
@@ -153,8 +151,8 @@ pub(super) fn ui(ui: &mut Ui, workers: Workers<'_>, messages: &Messages, state: 
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let count = messages.list.len();
             let text = if count == 1 { "1 message".to_owned() } else { format!("{count} messages") };
-            if ui.selectable_label(state.shows_log, text).on_hover_text(Command::ShowLog.text_and_tip().1).clicked() {
-                state.shows_log = !state.shows_log;
+            if ui.selectable_label(shows_log, text).on_hover_text(Command::ShowLog.text_and_tip().1).clicked() {
+                out.push(Action::Run(Command::ShowLog));
             }
             if let Some(shown) = session.shown() {
                 let deformed = &shown.deformed;

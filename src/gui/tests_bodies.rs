@@ -111,3 +111,29 @@ fn what_is_open_is_said_with_the_place_and_cannot_be_accepted() {
     settle(&mut window);
     assert_eq!(project(&window), before, "nothing happened");
 }
+
+#[test]
+fn closing_the_dialog_stops_the_work() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("lid.stl");
+    std::fs::write(&path, OPEN).unwrap();
+    let mut window = window();
+    open_dialog(&mut window);
+    let Dialog::Bodies(dialog) = &mut window.state_mut().dialog else { panic!("the dialog is open") };
+    dialog.field.text = path.display().to_string();
+    let task = |window: &Window| match &window.state().dialog {
+        Dialog::Bodies(dialog) => dialog.task().cloned(),
+        _ => None,
+    };
+    window.run_steps(2);
+    window.get_by_label("Add file").click();
+    // Asked after in the next frame at the soonest, so it is seen at work once however fast it is.
+    let first = (0..10).find_map(|_| {
+        window.step();
+        task(&window)
+    });
+    let first = first.expect("it works");
+    assert!(!first.is_cancelled(), "in earnest");
+    window.state_mut().dialog = Dialog::None;
+    assert!(first.is_cancelled(), "nobody waits for it any more");
+}

@@ -45,6 +45,35 @@ fn materials_and_metals_are_chosen_by_name_and_undone() {
 }
 
 #[test]
+fn a_choice_by_key_closes_its_list_and_gives_the_keys_back() {
+    let mut window = antenna_panel();
+    let is_open = |window: &Window| window.query_by_label(METALS[0].name).is_some();
+    window.get_by_label("Metal").focus();
+    window.run_steps(2);
+    let list = window.ctx.memory(|m| m.focused());
+    for chosen in [Key::Enter, Key::Space] {
+        window.key_press(Key::Enter);
+        window.run_steps(3);
+        assert!(is_open(&window), "the same key does not close it: {chosen:?}");
+        window.key_press(Key::ArrowDown);
+        window.run_steps(3);
+        window.key_press(chosen);
+        settle(&mut window);
+        assert!(!is_open(&window), "closed by {chosen:?}");
+        assert_eq!(window.ctx.memory(|m| m.focused()), list, "the keys go on from the list");
+    }
+    window.key_press(Key::Enter);
+    window.run_steps(3);
+    window.key_press(Key::ArrowDown);
+    window.run_steps(3);
+    window.key_press(Key::ArrowDown);
+    window.run_steps(3);
+    window.key_press(Key::Enter);
+    settle(&mut window);
+    assert_eq!(project(&window).antenna.patch_metal, METALS[0].to_spec(), "the second line was chosen");
+}
+
+#[test]
 fn values_of_ones_own_can_be_named_and_forgotten() {
     let mut window = antenna_panel();
     let mut antenna = project(&window).antenna;

@@ -265,6 +265,47 @@ fn a_tab_is_dragged_to_another_place_kept_and_put_back() {
 }
 
 #[test]
+fn results_and_messages_are_panes_that_commands_show_bring_forward_and_hide() {
+    let mut window = super::tests_solve::solved();
+    let in_front = |window: &Window, pane| window.state().state.layout.is_in_front(pane);
+    let place = |window: &Window, pane| {
+        let areas = window.state().state.layout.areas();
+        areas.into_iter().find(|(p, _)| *p == pane).expect("it is on show").1
+    };
+    let tab = |window: &Window, name| window.get_all_by_label(name).last().expect("its tab").rect().center();
+    let corner = |window: &Window| window.state().state.layout.height_at_corner(400.0);
+    let below = place(&window, Pane::Results);
+    assert!((corner(&window) - below.height()).abs() < 1.0, "notifications stay above: {below}");
+    run(&mut window, Command::ShowLog);
+    assert!(in_front(&window, Pane::Results) && in_front(&window, Pane::Messages), "upon each other");
+    let (from, to) = (tab(&window, "Messages"), place(&window, Pane::Results).center());
+    drag(&mut window, from, to);
+    drop(&mut window, to);
+    lay_out(&mut window);
+    assert!(in_front(&window, Pane::Messages) && !in_front(&window, Pane::Results), "one behind the other");
+    run(&mut window, Command::ShowResults);
+    assert!(in_front(&window, Pane::Results), "brought forward, and not hidden");
+    let view = window.get_by_label("3-D view").rect();
+    let (from, to) = (tab(&window, "Results"), egui::pos2(view.right() - 20.0, view.center().y));
+    drag(&mut window, from, to);
+    drop(&mut window, to);
+    lay_out(&mut window);
+    let beside = place(&window, Pane::Results);
+    assert!(beside.width() < 500.0 && beside.height() > beside.width(), "beside the view: {beside}");
+    let messages = place(&window, Pane::Messages).height();
+    assert!((corner(&window) - messages).abs() < 1.0, "notifications stay above the messages: {}", corner(&window));
+    assert_eq!(unnamed(&window), Vec::<String>::new(), "every control has a name");
+    window.get_by_label("Close the results").click();
+    lay_out(&mut window);
+    assert!(!in_front(&window, Pane::Results) && !window.state().state.solve.shows_results, "hidden");
+    run(&mut window, Command::ShowLog);
+    assert!(!in_front(&window, Pane::Messages) && corner(&window) < 1.0, "hidden");
+    run(&mut window, Command::ResetLayout);
+    run(&mut window, Command::ShowResults);
+    assert!((place(&window, Pane::Results).top() - below.top()).abs() < 1.0, "where it was at first");
+}
+
+#[test]
 fn the_interface_grows_and_shrinks_by_key_and_within_limits() {
     let mut window = window();
     let scale = |window: &Window| (window.ctx.zoom_factor() * 10.0).round() as i32;

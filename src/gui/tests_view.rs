@@ -3,11 +3,17 @@
 use super::app::App;
 use super::command::Command;
 use super::heat::OnShow;
+use super::places::Refusal;
 use super::tests::{Window, has_adapter, lay_out, project, run, settle, until, window};
 use super::ui_state::{Heat, HeatPart};
-use crate::pipeline::PipelineError;
+use crate::geometry::DVec3;
+use crate::pipeline::job::JobError;
 use crate::pipeline::worker::Reply;
-use crate::project::CompensationMode;
+use crate::pipeline::{PipelineError, Shape};
+use crate::project::{CompensationMode, ResistorSpec};
+use crate::render::StandardView;
+use crate::tet::{EncloseError, TetError};
+use egui::{Event, Shape as Shape2d, vec2};
 use egui_kittest::kittest::Queryable;
 
 #[test]
@@ -76,6 +82,55 @@ fn crossings_of_a_refused_shape_are_listed_and_gone_to() {
 }
 
 #[test]
+fn a_folded_shape_tells_where_and_the_mesh_too() {
+    let folded = PipelineError::Folded { x_mm: 1.0, y_mm: 2.0, at_mm: [1.5, 2.0, -3.0] };
+    assert_eq!(folded.places_mm(), [[1.5, 2.0, -3.0]], "where it was carried to");
+    let missing = TetError::NotRecovered { n_missing: 1, places: vec![DVec3::new(1e-3, 2e-3, 0.0)] };
+    let error = JobError::from(PipelineError::from(EncloseError::from(missing)));
+    let drawn = project(&window());
+    let refusal = Refusal::new(&error, drawn.clone(), Shape::Deformed);
+    assert_eq!(refusal.places_mm(&drawn), [[1.0, 2.0, 0.0]], "as long as the project is the same");
+    let mut other = drawn.clone();
+    other.antenna.width_mm += 1.0;
+    assert!(refusal.places_mm(&other).is_empty(), "and no longer");
+    assert!(Refusal::new(&error, drawn.clone(), Shape::Flat).places_mm(&drawn).is_empty(), "not on another shape");
+}
+
+/// Whether a text is painted on its own somewhere in the window.
+fn is_painted(window: &Window, text: &str) -> bool {
+    fn holds(shape: &Shape2d, text: &str) -> bool {
+        match shape {
+            Shape2d::Text(written) => written.galley.text() == text,
+            Shape2d::Vec(shapes) => shapes.iter().any(|shape| holds(shape, text)),
+            _ => false,
+        }
+    }
+    window.output().shapes.iter().any(|clipped| holds(&clipped.shape, text))
+}
+
+#[test]
+fn feed_and_resistors_tell_their_values_under_the_pointer() {
+    let mut window = window();
+    let mut antenna = project(&window).antenna;
+    antenna.resistors.push(ResistorSpec { x_mm: -3.0, y_mm: 2.5, ohm: 75.0 });
+    window.state_mut().edit("resistors", crate::project::Edit::SetAntenna(antenna));
+    // Where no vertex of the cage is nearer.
+    window.state_mut().state.shows_cage = false;
+    run(&mut window, Command::LookFrom(StandardView::Top));
+    settle(&mut window);
+    for name in ["Feed point", "Resistor 1: 75 Ω"] {
+        assert!(!is_painted(&window, name), "not without the pointer: {name}");
+        let at = window.get_by_label(name).rect().center();
+        window.event(Event::PointerMoved(at));
+        lay_out(&mut window);
+        assert!(is_painted(&window, name), "under the pointer: {name}");
+        window.event(Event::PointerMoved(at + vec2(40.0, 0.0)));
+        lay_out(&mut window);
+        assert!(!is_painted(&window, name), "beside it no more: {name}");
+    }
+}
+
+#[test]
 fn the_report_is_saved_from_its_dialog() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut window = window();
@@ -113,7 +168,7 @@ fn an_idle_window_draws_nothing_turning_uploads_nothing_and_a_drag_positions_alo
         renderer.callback_resources.get::<crate::render::Renderer>().expect("installed").counts()
     };
     let away = egui::pos2(640.0, 790.0);
-    window.event(egui::Event::PointerMoved(away));
+    window.event(Event::PointerMoved(away));
     draw(&mut window);
     let idle = draw(&mut window);
     assert_eq!(draw(&mut window), idle, "idle");

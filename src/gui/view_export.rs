@@ -2,6 +2,7 @@
 
 use super::app::App;
 use super::dialogs::Dialog;
+use super::field::Choices;
 use super::file_field::{FileField, Pressed};
 use super::heat::Bar;
 use super::outbox::Outbox;
@@ -107,7 +108,7 @@ impl ViewExport {
         };
         let label = ui.label("Size");
         let combo = ComboBox::from_id_salt("picture size").width(200.0).selected_text(size(self.choice.scale));
-        let combo = combo.show_ui(ui, |ui| {
+        let combo = combo.show_list(ui, |ui| {
             for scale in [1, 2, 4] {
                 ui.selectable_value(&mut self.choice.scale, scale, size(scale));
             }

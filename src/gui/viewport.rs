@@ -79,6 +79,8 @@ pub(super) struct Sources<'a> {
     /// The computed antenna, and whether it is another one than the project's, which is only looked at.
     pub(super) on_show: Option<OnShow<'a>>,
     pub(super) preview: Option<CompensationMode>,
+    /// Places to be marked, mm.
+    pub(super) places_mm: &'a [[f64; 3]],
 }
 
 /// What a frame of the view works with.
@@ -89,6 +91,7 @@ struct Frame<'a> {
     solve: Option<&'a SolveSession>,
     on_show: Option<OnShow<'a>>,
     preview: Option<CompensationMode>,
+    places_mm: &'a [[f64; 3]],
     /// Handles in picture units.
     handles: &'a [Vec3],
     gizmo: Option<Gizmo>,
@@ -142,7 +145,7 @@ impl Frame<'_> {
 impl Viewport {
     /// Draws the view and turns what the pointer does into wishes.
     pub(super) fn ui(&mut self, ui: &mut Ui, sources: Sources<'_>, state: &mut UiState, out: &mut Outbox) {
-        let Sources { session, mesh, on_show, preview, .. } = sources;
+        let Sources { session, mesh, on_show, preview, places_mm, .. } = sources;
         let solve = sources.solve.filter(|_| mesh.is_none());
         // The cage is neither seen nor grabbed while the mesh is shown.
         let pose = sources.pose.filter(|_| mesh.is_none());
@@ -155,7 +158,7 @@ impl Viewport {
         };
         state.selection.retain(|&v| pose.is_none_or(|p| (v as usize) < p.cage.n_handles()));
         let gizmo = gizmo(&handles, state, Tokens::here(ui), self.hot);
-        let frame = Frame { session, pose, mesh, solve, on_show, preview, handles: &handles, gizmo, rect };
+        let frame = Frame { session, pose, mesh, solve, on_show, preview, places_mm, handles: &handles, gizmo, rect };
         if std::mem::take(&mut state.fit) {
             self.fit(ui, &frame, state);
         }
@@ -416,8 +419,8 @@ impl Viewport {
             overlay::note(ui, frame.rect, format!("Pattern of {}", run.name), tokens.weak);
         }
         if frame.mesh.is_none() && frame.preview.is_none() {
-            let places = frame.session.crossings_mm().iter().map(|p| DVec3::from_array(*p).as_vec3());
-            overlay::crossings(ui, frame.rect, &view, places);
+            let places = frame.places_mm.iter().map(|p| DVec3::from_array(*p).as_vec3());
+            overlay::places(ui, frame.rect, &view, places);
         }
         if let Some(mesh) = frame.mesh {
             let is_stale = mesh.is_stale(frame.session.project());

@@ -4,10 +4,12 @@ use crate::antenna::PatchError;
 use crate::cage::{CageError, PoseError, PresetError};
 use crate::deform::DeformError;
 use crate::distortion::CompensationError;
+use crate::geometry::DVec3;
 use crate::project::BodiesError;
 use crate::task::Cancelled;
 use crate::tet::{BlockError, EncloseError, TetError};
 use crate::tlm::TlmError;
+use crate::units::to_mm;
 
 /// Why a project could not be computed; the message says what to change.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -64,6 +66,8 @@ pub enum PipelineError {
         x_mm: f64,
         /// y of the flat place, mm.
         y_mm: f64,
+        /// Where the map carries it, mm.
+        at_mm: [f64; 3],
     },
     /// The deformed surface crosses itself.
     #[error(
@@ -108,12 +112,16 @@ pub enum PipelineError {
 }
 
 impl PipelineError {
-    /// Where the deformed surface crosses itself, if that is why there is none, mm.
+    /// Where to look in the deformed antenna, mm; empty where no place is to blame.
     #[must_use]
-    pub fn crossings_mm(&self) -> &[[f64; 3]] {
+    pub fn places_mm(&self) -> Vec<[f64; 3]> {
+        let in_mm = |places: &[DVec3]| places.iter().map(|p| p.to_array().map(to_mm)).collect();
         match self {
-            Self::Crossing { places_mm, .. } => places_mm,
-            _ => &[],
+            Self::Crossing { places_mm, .. } => places_mm.clone(),
+            Self::Folded { at_mm: place_mm, .. } | Self::Unmeshable { place_mm } => vec![*place_mm],
+            Self::Mesh(EncloseError::Air(error)) => in_mm(error.places()),
+            Self::Mesh(EncloseError::Block(BlockError::Folded { at, .. })) => in_mm(&[*at]),
+            _ => Vec::new(),
         }
     }
 }

@@ -123,8 +123,8 @@ fn estimate_bodies(bodies: &BodiesSpec, settings: &SolveSettings, speed: f64) ->
             2.0 * ((hi - lo).element_sum() - (hi - lo).min_element())
         })
         .sum();
-    let triangles = area / (0.433 * edge * edge) + RIM_TRIANGLES * outlines / edges.sizes.at_metal;
-    let n_tets = AIR_PER_TRIANGLE / 2.0 * triangles + FILLED * sphere;
+    let triangles = area / (2.0 * 0.433 * edge * edge) + RIM_TRIANGLES * outlines / edges.sizes.at_metal;
+    let n_tets = AIR_PER_TRIANGLE * triangles + FILLED * sphere;
     let shortest = (STEP_OVER_RIM * edges.sizes.at_metal).min(STEP_OVER_SIDE * bodies::thinnest(bodies, &edges));
     let dt = shortest / C0;
     let time = (pulse.end() + 10.0 / lo).min(settings.longest);

@@ -39,6 +39,17 @@ pub enum JobError {
     BrokeOff,
 }
 
+impl JobError {
+    /// Where to look in the deformed antenna, mm; empty where no place is to blame.
+    #[must_use]
+    pub fn places_mm(&self) -> Vec<[f64; 3]> {
+        match self {
+            Self::Pipeline(error) => error.places_mm(),
+            Self::BrokeOff => Vec::new(),
+        }
+    }
+}
+
 /// An answer.
 #[derive(Debug)]
 pub struct Reply<W: Work> {

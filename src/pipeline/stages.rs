@@ -302,9 +302,10 @@ pub(super) fn check_folds(map: &impl SmoothMap, (lo, hi): (DVec3, DVec3)) -> Res
     let points: Vec<DVec3> = (0..nx * ny * nz)
         .map(|s| lo + (hi - lo) * DVec3::new(at(s / (ny * nz), nx), at(s / nz % ny, ny), at(s % nz, nz)))
         .collect();
-    for (point, (_, jacobian)) in points.iter().zip(map.jacobians(&points)?) {
+    for (point, (image, jacobian)) in points.iter().zip(map.jacobians(&points)?) {
         if jacobian.determinant() <= 0.0 {
-            return Err(PipelineError::Folded { x_mm: to_mm(point.x), y_mm: to_mm(point.y) });
+            let at_mm = image.to_array().map(to_mm);
+            return Err(PipelineError::Folded { x_mm: to_mm(point.x), y_mm: to_mm(point.y), at_mm });
         }
     }
     Ok(())

@@ -5,10 +5,11 @@
 
 use super::{MaterialSpec, materials};
 use crate::antenna::bodies::{Gap, GapError, MAX_TRIANGLES, gap, upright, weld};
-use crate::antenna::{Body, BodyFault, Dielectric};
+use crate::antenna::{Body, Dielectric, WeldError};
 use crate::geometry::{DVec2, DVec3, Facet, Plc, PlcError, Region, RegionId, RegionRole, TriMesh, VertexId};
 use crate::io::bodies::Solid;
 use crate::io::{Material, Role};
+use crate::task::Task;
 use crate::units::{from_mm, to_mm};
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -141,8 +142,8 @@ pub enum BodiesError {
         hi: f64,
     },
     /// With the feed's ends the bodies cannot be welded.
-    #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
-    Faults(Vec<BodyFault>),
+    #[error(transparent)]
+    Weld(#[from] WeldError),
     /// A compensation was asked for.
     #[error("imported bodies are deformed as drawn: compensation needs the patch's template; choose none")]
     Compensated,
@@ -276,13 +277,13 @@ impl BodiesSpec {
     /// * `weld_mm`: distance within which two places become one, mm.
     ///
     /// # Errors
-    /// Everything that is wrong, with the places.
-    pub fn weld(loose: &[LooseBody], weld_mm: f64) -> Result<Self, Vec<BodyFault>> {
+    /// Everything that is wrong, with the places; or that it was called off.
+    pub fn weld(loose: &[LooseBody], weld_mm: f64, task: &Task) -> Result<Self, WeldError> {
         let body = |LooseBody { spec, surface }: &LooseBody| {
             let (role, material) = spec.made_of();
             Body { name: spec.name.clone(), role, material, surface: surface.clone() }
         };
-        let plc = weld(&loose.iter().map(body).collect::<Vec<_>>(), &[], from_mm(weld_mm))?;
+        let plc = weld(&loose.iter().map(body).collect::<Vec<_>>(), &[], from_mm(weld_mm), task)?;
         let bodies = loose.iter().map(|b| b.spec.clone()).collect();
         Ok(Self { bodies, weld_mm, shape: Shape::of(&plc), feed: None })
     }
@@ -301,7 +302,7 @@ impl BodiesSpec {
             surface: plc.boundary(id),
         };
         let bodies: Vec<Body> = plc.solids().map(body).collect();
-        let plc = weld(&bodies, &ends, tolerance).map_err(BodiesError::Faults)?;
+        let plc = weld(&bodies, &ends, tolerance, &Task::default())?;
         let gap = gap(&plc, ends, tolerance)?;
         let [from_mm, to_mm] = gap.ends.map(|v| plc.vertices[v.index()].to_array().map(to_mm));
         let fed = Self { shape: Shape::of(&plc), feed: Some(FeedSpec { from_mm, to_mm, ohm }), ..self.clone() };
@@ -397,7 +398,7 @@ mod tests {
         let below = cuboid("", [-8.0, -6.0, -1.0], [8.0, 6.0, 0.0], [3, 2, 1]);
         let above = cuboid("", [-3.3, -2.1, 0.0], [4.1, 2.3, 0.1], [1, 1, 1]);
         let bodies = [loose("base", BodyKind::Dielectric(material), &below), loose("top", BodyKind::Metal, &above)];
-        BodiesSpec::weld(&bodies, 0.001).expect("they touch")
+        BodiesSpec::weld(&bodies, 0.001, &Task::default()).expect("they touch")
     }
 
     #[test]

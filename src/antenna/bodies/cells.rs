@@ -6,8 +6,9 @@
 
 use super::imprint::{Nodes, key};
 use super::inspect::add_place;
-use super::{Body, BodyFault, Face, Soup};
+use super::{Body, BodyFault, Face, Soup, watched};
 use crate::geometry::{DVec2, DVec3};
+use crate::task::{Cancelled, Task};
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation, handles::FixedVertexHandle};
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -15,11 +16,18 @@ type Cdt = ConstrainedDelaunayTriangulation<Point2<f64>>;
 /// The triangles of a cell by its sorted nodes.
 type Known = HashMap<Vec<usize>, Vec<[usize; 3]>>;
 
+/// Faces cut at their nodes, and what cannot be cut.
+type Pieces = (Vec<Face>, Vec<BodyFault>);
+
 /// Cuts all faces at their nodes; which cannot be cut is a fault.
-pub(super) fn cut(soup: &Soup, nodes: &Nodes, bodies: &[Body]) -> (Vec<Face>, Vec<BodyFault>) {
+///
+/// # Errors
+/// [`Cancelled`].
+pub(super) fn cut(soup: &Soup, nodes: &Nodes, bodies: &[Body], task: &Task) -> Result<Pieces, Cancelled> {
     let neighbors = neighbors(soup, nodes);
     let (mut faces, mut known, mut unfit) = (Vec::new(), Known::new(), BTreeMap::new());
-    for (f, face) in soup.faces.iter().enumerate() {
+    for watched in watched("cutting faces", &soup.faces, task) {
+        let (f, face) = watched?;
         let [a, b, c] = face.corners;
         let rim: Vec<usize> = [[a, b], [b, c], [c, a]].into_iter().flat_map(|[p, q]| nodes.along(p, q)).collect();
         if rim.len() == 3 && nodes.in_face[f].is_empty() {
@@ -44,7 +52,7 @@ pub(super) fn cut(soup: &Soup, nodes: &Nodes, bodies: &[Body]) -> (Vec<Face>, Ve
         count,
         places,
     };
-    (faces, unfit.into_iter().map(fault).collect())
+    Ok((faces, unfit.into_iter().map(fault).collect()))
 }
 
 /// For each vertex the others at the ends of pieces of edges.

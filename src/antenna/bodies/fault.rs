@@ -2,6 +2,7 @@
 
 use super::MAX_TRIANGLES;
 use crate::geometry::{DVec3, PlcError};
+use crate::task::Cancelled;
 use crate::units::to_mm;
 
 /// Places that a message spells out.
@@ -99,6 +100,17 @@ pub enum BodyFault {
     /// What came out is no complex.
     #[error("the welded bodies are no valid surface: {0}")]
     Complex(PlcError),
+}
+
+/// Why there is no complex of the bodies.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum WeldError {
+    /// Called off.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// Everything that is wrong.
+    #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
+    Faults(Vec<BodyFault>),
 }
 
 impl BodyFault {

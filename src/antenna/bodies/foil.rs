@@ -102,6 +102,7 @@ mod tests {
     use super::super::{Body, weld};
     use super::*;
     use crate::geometry::DVec3;
+    use crate::task::Task;
 
     fn metal(name: &str, lo: [f64; 3], hi: [f64; 3]) -> Body {
         Body { role: RegionRole::Conductor, ..cuboid(name, lo, hi, [1, 1, 1]) }
@@ -122,7 +123,7 @@ mod tests {
             metal("director", [2.0, 2.0, 3.0], [8.0, 7.0, 3.1]),
             metal("block", [20.0, 0.0, 0.0], [22.0, 2.0, 0.5]),
         ];
-        let plc = weld(&bodies, &[], 1e-6).expect("they touch or are apart");
+        let plc = weld(&bodies, &[], 1e-6, &Task::default()).expect("they touch or are apart");
         let thin = with_sheets(&plc, 0.2e-3, &[]);
         assert_eq!(thin.is_sheet, [false, false, true, true, true, false], "the air, the base, foils, the block");
         for (name, area) in [("patch", 30.0), ("ground", 144.0), ("director", 30.0), ("block", 12.0)] {
@@ -144,7 +145,7 @@ mod tests {
     fn a_place_that_must_stay_chooses_the_face() {
         let bodies = [metal("strip", [0.0, 0.0, 0.0], [5.0, 1.0, 0.1])];
         let (top, side) = (DVec3::new(1.0, 0.5, 0.1) * 1e-3, DVec3::new(5.0, 0.5, 0.05) * 1e-3);
-        let plc = weld(&bodies, &[top, side], 1e-6).expect("one body");
+        let plc = weld(&bodies, &[top, side], 1e-6, &Task::default()).expect("one body");
         let at = |p: DVec3| VertexId::new(plc.vertices.iter().position(|q| q.distance(p) < 1e-9).expect("a vertex"));
         let above = with_sheets(&plc, 0.2e-3, &[at(top)]);
         assert!(above.plc.facets.iter().all(|f| f.vertices.iter().all(|v| plc.vertices[v.index()].z > 0.9e-4)));

@@ -1,8 +1,9 @@
 //! Where vertices and edges of bodies lie on edges and faces of others: nodes that both must have.
 
-use super::Soup;
+use super::{Soup, watched};
 use crate::geometry::DVec3;
 use crate::geometry::bvh::{Aabb, Bvh};
+use crate::task::{Cancelled, Task};
 use std::collections::HashMap;
 
 /// Sine of the angle below which two edges count as parallel: their ends tell then where they meet.
@@ -75,7 +76,10 @@ fn sides([a, b, c]: [usize; 3]) -> [[usize; 2]; 3] {
 }
 
 /// Finds all nodes; where edges cross there are new vertices.
-pub(super) fn imprint(soup: &mut Soup, mut merge: Merge, tolerance: f64) -> Nodes {
+///
+/// # Errors
+/// [`Cancelled`].
+pub(super) fn imprint(soup: &mut Soup, mut merge: Merge, tolerance: f64, task: &Task) -> Result<Nodes, Cancelled> {
     let mut edges: Vec<[usize; 2]> = soup.faces.iter().flat_map(|f| sides(f.corners)).collect();
     edges.sort_unstable();
     edges.dedup();
@@ -83,7 +87,8 @@ pub(super) fn imprint(soup: &mut Soup, mut merge: Merge, tolerance: f64) -> Node
     let boxes: Vec<Aabb> = (0..edges.len()).map(|e| wide(&ends(soup, e), tolerance)).collect();
     let tree = Bvh::new(boxes.clone());
     let mut on_edge: Vec<Vec<usize>> = vec![Vec::new(); edges.len()];
-    for e in 0..edges.len() {
+    for watched in watched("finding crossings", &edges, task) {
+        let (e, _) = watched?;
         let mut met = Vec::new();
         tree.for_each_meeting(&boxes[e], |f| {
             if f > e && !edges[f].iter().any(|v| edges[e].contains(v)) {
@@ -98,7 +103,8 @@ pub(super) fn imprint(soup: &mut Soup, mut merge: Merge, tolerance: f64) -> Node
             }
         }
     }
-    for (v, &p) in soup.vertices.iter().enumerate() {
+    for watched in watched("finding contacts", &soup.vertices, task) {
+        let (v, &p) = watched?;
         tree.for_each_meeting(&wide(&[p], tolerance), |e| {
             if !edges[e].contains(&v) && is_on_edge(p, ends(soup, e), tolerance) {
                 on_edge[e].push(v);
@@ -113,17 +119,18 @@ pub(super) fn imprint(soup: &mut Soup, mut merge: Merge, tolerance: f64) -> Node
     }
     let on_edge = edges.iter().copied().zip(on_edge).filter(|(_, nodes)| !nodes.is_empty()).collect();
     let mut nodes = Nodes { on_edge, in_face: Vec::new() };
-    nodes.in_face = inner_nodes(soup, &nodes, tolerance);
-    nodes
+    nodes.in_face = inner_nodes(soup, &nodes, tolerance, task)?;
+    Ok(nodes)
 }
 
 /// By face, the vertices that lie in it and not on its edges.
-fn inner_nodes(soup: &Soup, nodes: &Nodes, tolerance: f64) -> Vec<Vec<usize>> {
+fn inner_nodes(soup: &Soup, nodes: &Nodes, tolerance: f64, task: &Task) -> Result<Vec<Vec<usize>>, Cancelled> {
     let corners = |f: usize| soup.faces[f].corners.map(|v| soup.vertices[v]);
     let boxes = (0..soup.faces.len()).map(|f| wide(&corners(f), tolerance)).collect();
     let tree = Bvh::new(boxes);
     let mut in_face = vec![Vec::new(); soup.faces.len()];
-    for (v, &p) in soup.vertices.iter().enumerate() {
+    for watched in watched("finding contacts", &soup.vertices, task) {
+        let (v, &p) = watched?;
         tree.for_each_meeting(&wide(&[p], 0.0), |f| {
             let face = soup.faces[f].corners;
             let is_on_rim = || sides(face).iter().any(|e| nodes.on_edge.get(e).is_some_and(|n| n.contains(&v)));
@@ -132,7 +139,7 @@ fn inner_nodes(soup: &Soup, nodes: &Nodes, tolerance: f64) -> Vec<Vec<usize>> {
             }
         });
     }
-    in_face
+    Ok(in_face)
 }
 
 fn wide(points: &[DVec3], by: f64) -> Aabb {

@@ -4,6 +4,7 @@ use super::BodyFault;
 use super::fault::MAX_PLACES;
 use crate::geometry::bvh::Aabb;
 use crate::geometry::{DVec3, Plc, Region, RegionId, VertexId, inside, intersect};
+use crate::task::{Cancelled, Task};
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// How often, and where first.
@@ -38,15 +39,20 @@ impl Clashes {
 }
 
 /// Everything that is wrong with a complex of bodies: first what is open, else what overlaps.
-pub(super) fn inspect(plc: &Plc) -> Vec<BodyFault> {
+///
+/// # Errors
+/// [`Cancelled`].
+pub(super) fn inspect(plc: &Plc, task: &Task) -> Result<Vec<BodyFault>, Cancelled> {
+    let phase = task.phase("checking bodies", 3);
     let mut faults: Vec<BodyFault> = plc.solids().flat_map(|(id, region)| rims(plc, id, region)).collect();
-    if faults.is_empty() {
-        faults = crossings(plc);
+    for look in [crossings, nested] {
+        task.check()?;
+        phase.advance(1);
+        if faults.is_empty() {
+            faults = look(plc);
+        }
     }
-    if faults.is_empty() {
-        faults = nested(plc);
-    }
-    faults
+    Ok(faults)
 }
 
 /// Edges of a body that do not have one face on each side.

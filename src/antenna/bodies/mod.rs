@@ -23,17 +23,21 @@ mod inspect;
 #[cfg(test)]
 pub(crate) mod tests;
 
-pub use fault::BodyFault;
+pub use fault::{BodyFault, WeldError};
 pub use foil::{WithSheets, with_sheets};
 pub use gap::{Gap, GapError, gap, upright};
 
 use super::Dielectric;
 use crate::geometry::{DVec3, Facet, Plc, Region, RegionId, RegionRole, TriMesh, VertexId};
+use crate::task::{Cancelled, Task};
 use imprint::Merge;
 use std::collections::HashMap;
 
 /// More triangles than this are no flat antenna, and every step of the editor would be slow with them.
 pub const MAX_TRIANGLES: usize = 200_000;
+
+/// Items between two looks at the task: some milliseconds.
+const STRIDE: usize = 1024;
 
 /// One body as drawn.
 #[derive(Clone, Debug, PartialEq)]
@@ -76,22 +80,38 @@ struct Face {
 /// * `tolerance`: distance within which two places are one, m; well above rounding, well below the thinnest part.
 ///
 /// # Errors
-/// Everything that is wrong, with the places.
-pub fn weld(bodies: &[Body], places: &[DVec3], tolerance: f64) -> Result<Plc, Vec<BodyFault>> {
-    let (mut soup, mut merge) = gather(bodies, tolerance)?;
+/// [`WeldError::Faults`]: everything that is wrong, with the places. [`WeldError::Cancelled`].
+pub fn weld(bodies: &[Body], places: &[DVec3], tolerance: f64, task: &Task) -> Result<Plc, WeldError> {
+    let (mut soup, mut merge) = gather(bodies, tolerance).map_err(WeldError::Faults)?;
     for &place in places {
         merge.vertex(place, &mut soup.vertices);
     }
-    let nodes = imprint::imprint(&mut soup, merge, tolerance);
-    let (faces, mut faults) = cells::cut(&soup, &nodes, bodies);
+    let nodes = imprint::imprint(&mut soup, merge, tolerance, task)?;
+    let (faces, mut faults) = cells::cut(&soup, &nodes, bodies, task)?;
     let plc = join(&soup.vertices, &faces, bodies, &mut faults);
     if faults.is_empty() {
-        faults = inspect::inspect(&plc);
+        faults = inspect::inspect(&plc, task)?;
     }
     if faults.is_empty() {
         faults.extend(plc.check().err().map(BodyFault::Complex));
     }
-    if faults.is_empty() { Ok(plc) } else { Err(faults) }
+    if faults.is_empty() { Ok(plc) } else { Err(WeldError::Faults(faults)) }
+}
+
+/// The items of a slice, as a phase of a task that is looked at now and then.
+fn watched<'a, T>(
+    name: &'static str,
+    items: &'a [T],
+    task: &'a Task,
+) -> impl Iterator<Item = Result<(usize, &'a T), Cancelled>> {
+    let phase = task.phase(name, items.len());
+    items.iter().enumerate().map(move |(k, item)| {
+        if k % STRIDE == 0 {
+            task.check()?;
+            phase.advance(STRIDE.min(k));
+        }
+        Ok((k, item))
+    })
 }
 
 /// All faces over merged vertices; bodies that are inside out are turned.

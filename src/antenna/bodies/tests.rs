@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::antenna::{flat_complex, params};
+use std::sync::{Arc, Mutex};
 
 const TOLERANCE: f64 = 1e-6;
 
@@ -55,7 +56,8 @@ fn touching_boxes_with_different_triangles_share_their_interface() {
     ];
     for (k, (above, area)) in above.into_iter().enumerate() {
         let own = above.surface.volume() * 1e9;
-        let plc = weld(&[below.clone(), above], &[], TOLERANCE).unwrap_or_else(|faults| panic!("{k}: {faults:?}"));
+        let plc = weld(&[below.clone(), above], &[], TOLERANCE, &Task::default())
+            .unwrap_or_else(|faults| panic!("{k}: {faults:?}"));
         assert_eq!(plc.check(), Ok(()), "{k}");
         assert!((volume_mm3(&plc, "below") - 24.0).abs() < 0.01, "{k}: {}", volume_mm3(&plc, "below"));
         assert!((volume_mm3(&plc, "above") - own).abs() < 0.01, "{k}: {}", volume_mm3(&plc, "above"));
@@ -67,7 +69,7 @@ fn touching_boxes_with_different_triangles_share_their_interface() {
 fn boxes_apart_by_more_than_the_tolerance_share_nothing() {
     let below = cuboid("below", [0.0, 0.0, 0.0], [6.0, 4.0, 1.0], [1, 1, 1]);
     let above = cuboid("above", [0.0, 0.0, 1.01], [6.0, 4.0, 2.0], [1, 1, 1]);
-    let plc = weld(&[below, above], &[], TOLERANCE).expect("apart");
+    let plc = weld(&[below, above], &[], TOLERANCE, &Task::default()).expect("apart");
     assert_eq!(plc.n_shared_facets(), 0, "a gap of 0.01 mm");
 }
 
@@ -75,7 +77,8 @@ fn boxes_apart_by_more_than_the_tolerance_share_nothing() {
 fn an_open_body_is_refused_with_the_place() {
     let mut open = cuboid("lid", [0.0, 0.0, 0.0], [2.0, 2.0, 1.0], [1, 1, 1]);
     let lost = open.surface.faces.pop().expect("a face").map(|v| open.surface.vertices[v.index()]);
-    let faults = weld(&[open], &[], TOLERANCE).expect_err("open");
+    let faults = weld(&[open], &[], TOLERANCE, &Task::default());
+    let Err(WeldError::Faults(faults)) = faults else { panic!("open") };
     let [BodyFault::Open { body, count: 3, places }] = &faults[..] else { panic!("{faults:?}") };
     assert_eq!(body, "lid", "which");
     let middle = lost[0].midpoint(lost[1]);
@@ -95,7 +98,8 @@ fn overlaps_are_refused_with_names_and_places() {
         ([1.0, 1.0, 0.0], [3.0, 3.0, 2.0]),
     ];
     for (k, (lo, hi)) in others.into_iter().enumerate() {
-        let faults = weld(&[base(), cuboid("b", lo, hi, [1, 1, 1])], &[], TOLERANCE).expect_err("overlap");
+        let faults = weld(&[base(), cuboid("b", lo, hi, [1, 1, 1])], &[], TOLERANCE, &Task::default());
+        let Err(WeldError::Faults(faults)) = faults else { panic!("overlap") };
         let BodyFault::Overlap { bodies, places, .. } = &faults[0] else { panic!("{k}: {faults:?}") };
         assert_eq!(bodies, &["a", "b"].map(str::to_owned), "{k}");
         let near = |p: &DVec3| p.cmpge(DVec3::splat(-1e-6)).all() && p.cmple(DVec3::splat(6.001e-3)).all();
@@ -107,10 +111,11 @@ fn overlaps_are_refused_with_names_and_places() {
 fn a_body_inside_out_is_turned_and_one_with_a_flipped_face_is_refused() {
     let mut body = cuboid("a", [0.0, 0.0, 0.0], [4.0, 4.0, 4.0], [2, 2, 2]);
     body.surface.faces.iter_mut().for_each(|f| f.swap(0, 1));
-    let plc = weld(std::slice::from_ref(&body), &[], TOLERANCE).expect("turned");
+    let plc = weld(std::slice::from_ref(&body), &[], TOLERANCE, &Task::default()).expect("turned");
     assert!((volume_mm3(&plc, "a") - 64.0).abs() < 1e-9, "outward");
     body.surface.faces[5].swap(0, 1);
-    let faults = weld(&[body], &[], TOLERANCE).expect_err("flipped");
+    let faults = weld(&[body], &[], TOLERANCE, &Task::default());
+    let Err(WeldError::Faults(faults)) = faults else { panic!("flipped") };
     assert!(faults.iter().any(|f| matches!(f, BodyFault::Branching { .. })), "{faults:?}");
 }
 
@@ -128,7 +133,7 @@ fn a_body_that_fills_the_hole_of_another_shares_all_its_walls() {
         cuboid(&format!("b{k}"), [x, y, 0.0], [u, v, 1.0], [k + 1, 5 - k, 1 + k % 2])
     };
     let bodies: Vec<Body> = boxes.into_iter().enumerate().map(body).collect();
-    let plc = weld(&bodies, &[], TOLERANCE).expect("they touch");
+    let plc = weld(&bodies, &[], TOLERANCE, &Task::default()).expect("they touch");
     assert!((shared_area_mm2(&plc) - 24.0).abs() < 1e-6, "all walls: {}", shared_area_mm2(&plc));
 }
 
@@ -142,7 +147,7 @@ fn the_template_taken_apart_and_welded_again_is_the_same() {
         surface: flat.boundary(id),
     };
     let bodies: Vec<Body> = flat.solids().map(body).collect();
-    let plc = weld(&bodies, &[], TOLERANCE).expect("it was a complex");
+    let plc = weld(&bodies, &[], TOLERANCE, &Task::default()).expect("it was a complex");
     assert_eq!(plc.regions, flat.regions, "the same regions");
     assert_eq!(plc.facets.len(), flat.facets.len(), "the same facets");
     assert_eq!(plc.n_shared_facets(), flat.n_shared_facets(), "the same interfaces");
@@ -156,16 +161,42 @@ fn a_feed_is_found_between_metal_and_its_ends_become_vertices() {
         cuboid("top", [-3.3, -2.1, 0.0], [4.1, 2.3, 0.1], [1, 1, 1]),
     ];
     (bodies[0].role, bodies[2].role) = (RegionRole::Conductor, RegionRole::Conductor);
-    let plain = weld(&bodies, &[], TOLERANCE).expect("they touch");
+    let plain = weld(&bodies, &[], TOLERANCE, &Task::default()).expect("they touch");
     let at = crate::geometry::DVec2::new(1.23e-3, -0.7e-3);
     let ends = upright(&plain, at).expect("ground below, top above");
     assert!(ends[0].distance(at.extend(-1e-3)) < 1e-12 && ends[1].distance(at.extend(0.0)) < 1e-12, "{ends:?}");
     assert!(matches!(gap(&plain, ends, TOLERANCE), Err(GapError::OffMetal { .. })), "not yet vertices");
-    let plc = weld(&bodies, &ends, TOLERANCE).expect("with the feed");
+    let plc = weld(&bodies, &ends, TOLERANCE, &Task::default()).expect("with the feed");
     assert_eq!(plc.check(), Ok(()), "still a complex");
     let found = gap(&plc, ends, TOLERANCE).expect("a gap");
     assert_eq!(Some(found.region), plc.region("base"), "through the base");
     assert!(upright(&plain, crate::geometry::DVec2::new(6e-3, 0.0)).is_err(), "no metal above");
     let aslant = [ends[0], DVec3::new(4.1e-3, 2.3e-3, 0.1e-3)];
     assert!(matches!(gap(&plc, aslant, TOLERANCE), Err(GapError::Crosses { .. })), "through the top");
+}
+
+#[test]
+fn welding_is_called_off_at_every_stage() {
+    let bodies = [
+        cuboid("a", [0.0, 0.0, 0.0], [4.0, 4.0, 4.0], [9, 9, 9]),
+        cuboid("b", [0.0, 0.0, 4.0], [4.0, 4.0, 5.0], [7, 7, 1]),
+    ];
+    let seen = Arc::new(Mutex::new(Vec::new()));
+    let sink = Arc::clone(&seen);
+    let task = Task::with_progress(move |step| sink.lock().expect("no panic").push(step.phase));
+    weld(&bodies, &[], TOLERANCE, &task).expect("they touch");
+    let mut phases = seen.lock().expect("no panic").clone();
+    phases.dedup();
+    assert!(phases.len() >= 4, "all stages tell of themselves: {phases:?}");
+    for phase in phases {
+        let cancel = Task::default();
+        let stop = cancel.clone();
+        let task = cancel.listening(move |step| {
+            if step.phase == phase {
+                stop.cancel();
+            }
+        });
+        let outcome = weld(&bodies, &[], TOLERANCE, &task);
+        assert!(matches!(outcome, Err(WeldError::Cancelled(_))), "{phase}: {:?}", outcome.map(|plc| plc.facets.len()));
+    }
 }
