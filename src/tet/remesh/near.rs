@@ -22,8 +22,8 @@ impl Near {
     /// All points within a box that is grown by the reach; some of those around it, too.
     pub(super) fn around(&self, lo: DVec3, hi: DVec3) -> Vec<DVec3> {
         let [lo, hi] = [self.name(lo).map(|k| k - 1), self.name(hi).map(|k| k + 1)];
-        let n_cells: i64 = (0..3).map(|k| hi[k] - lo[k] + 1).product();
-        if n_cells.unsigned_abs() as usize > self.points.len() {
+        let n_cells: f64 = (0..3).map(|k| (hi[k] - lo[k] + 1) as f64).product();
+        if n_cells > self.points.len() as f64 {
             let is_in = |name: &[i64; 3]| (0..3).all(|k| (lo[k]..=hi[k]).contains(&name[k]));
             let mut names: Vec<_> = self.points.keys().filter(|name| is_in(name)).collect();
             // A map's own order changes from run to run.
