@@ -296,7 +296,6 @@ impl Command {
             Self::ResetSelected if facts.has_hand_edits => (facts.has_selection, "no vertex is selected"),
             Self::ResetSelected | Self::ResetAll => (facts.has_hand_edits, "no vertex was moved by hand"),
             Self::Compensate | Self::Compare if facts.has_bodies => (false, TEMPLATE_ONLY),
-            Self::Mesh | Self::Solve if facts.has_bodies => (false, TEMPLATE_ONLY),
             Self::ImportOutline => (!facts.has_bodies, TEMPLATE_ONLY),
             Self::CompensateNot => (facts.compensates, "there is no compensation"),
             Self::ExportMesh | Self::ShowMesh => (facts.has_mesh, "there is no mesh yet"),

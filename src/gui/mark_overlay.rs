@@ -19,6 +19,7 @@ fn text(kind: MarkKind) -> String {
     match kind {
         MarkKind::Feed => "Feed point".to_owned(),
         MarkKind::Resistor(index, ohm) => format!("Resistor {}: {ohm} Ω", index + 1),
+        MarkKind::Source(ohm) => format!("Feed: {ohm} Ω across the gap"),
     }
 }
 
@@ -35,7 +36,7 @@ pub(super) fn draw(ui: &Ui, response: &Response, view: &View, marks: &[Mark], re
         if !rect.contains(at) {
             continue;
         }
-        let strength = if mark.up.as_vec3().dot(to_eye) < 0.0 { BEHIND } else { 1.0 };
+        let strength = if mark.up.is_some_and(|up| up.as_vec3().dot(to_eye) < 0.0) { BEHIND } else { 1.0 };
         symbol(&painter, at, mark.kind, [tokens.viewport, tokens.text].map(|c| c.gamma_multiply(strength)));
         let place = Rect::from_center_size(at, vec2(2.0 * REACH, 2.0 * REACH));
         let named = ui.interact(place, response.id.with(text(mark.kind)), Sense::hover());
@@ -54,7 +55,7 @@ pub(super) fn draw(ui: &Ui, response: &Response, view: &View, marks: &[Mark], re
 /// A zigzag for a resistor, a ringed point for the feed, on a ground that keeps them readable.
 fn symbol(painter: &Painter, at: Pos2, kind: MarkKind, [ground, ink]: [Color32; 2]) {
     match kind {
-        MarkKind::Feed => {
+        MarkKind::Feed | MarkKind::Source(_) => {
             painter.circle(at, 5.0, ground, Stroke::new(1.4, ink));
             painter.circle_filled(at, 1.8, ink);
         }

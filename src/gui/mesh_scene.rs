@@ -7,7 +7,7 @@ use super::mesh_session::ShownMesh;
 use super::scene::{rgba, to_picture};
 use super::theme::Tokens;
 use super::ui_state::{MeshPaint, MeshUi};
-use crate::antenna::{COAX, SUBSTRATE};
+use crate::antenna::COAX;
 use crate::geometry::{RegionRole, VertexId};
 use crate::render::{Array, ColorMap, Grid, HandleState, Handles, Lines, Paint, Part, Scalars, Scene, Surface, Vec3};
 use crate::tet::{CutFace, FaceRole, TetMesh, cutaway};
@@ -84,11 +84,14 @@ impl Look {
             Some((FaceRole::Conductor, "pec_ground")) => Self::Ground,
             Some((FaceRole::Conductor, _)) => Self::Feed,
             Some((FaceRole::Port, _)) => Self::Port,
-            Some((FaceRole::Outer, _)) | None => match mesh.regions[mesh.tets[face.tet].region.index()].name.as_str() {
-                SUBSTRATE => Self::Substrate,
-                COAX => Self::Coax,
-                _ => Self::Air,
-            },
+            Some((FaceRole::Outer, _)) | None => {
+                let region = &mesh.regions[mesh.tets[face.tet].region.index()];
+                match region.role {
+                    RegionRole::Dielectric if region.name == COAX => Self::Coax,
+                    RegionRole::Dielectric => Self::Substrate,
+                    _ => Self::Air,
+                }
+            }
         }
     }
 }

@@ -50,14 +50,12 @@ pub(super) fn ui(ui: &mut Ui, project: &Project, spec: &BodiesSpec, state: &mut 
 /// Where the bodies are fed, and where they are to be.
 fn feed(ui: &mut Ui, spec: &BodiesSpec, typed: &mut FeedUi, out: &mut Outbox) {
     let now = match spec.feed {
-        None => "None yet.".to_owned(),
+        None => "None yet: the field solver needs one.".to_owned(),
         Some(FeedSpec { from_mm: [a, b, c], to_mm: [d, e, f], ohm }) => {
             format!("{ohm} Ω from ({a:.3}, {b:.3}, {c:.3}) to ({d:.3}, {e:.3}, {f:.3}) mm")
         }
     };
     ui.add(egui::Label::new(RichText::new(now).weak()).wrap());
-    let text = "It is kept with the bodies; the field solver does not take them yet.";
-    ui.add(egui::Label::new(RichText::new(text).weak()).wrap());
     let tip =
         "Across the lowest gap between two metal bodies above each other; else from one place on metal to another";
     ui.checkbox(&mut typed.is_upright, "Upright").on_hover_text(tip);

@@ -6,7 +6,7 @@ use super::outbox::Action;
 use super::tests::{Window, lay_out, project, settle, window};
 use super::ui_state::Tab;
 use crate::io::{ExportOptions, export};
-use crate::pipeline::flat;
+use crate::pipeline::{Density, flat};
 use crate::project::{BodyKind, Project};
 use egui_kittest::kittest::Queryable;
 use std::path::Path;
@@ -74,6 +74,17 @@ fn bodies_are_imported_shown_and_taken_back_by_one_undo() {
     settle(&mut window);
     let fed = project(&window).bodies.expect("bodies").feed.expect("placed");
     assert!((fed.from_mm[2] + 1.575).abs() < 1e-3 && fed.to_mm[2].abs() < 1e-3, "across the substrate: {fed:?}");
+    window.get_by_label("Feed: 50 Ω across the gap");
+    window.state_mut().state.mesh.density = Density::Coarse;
+    window.state_mut().carry_out(&egui::Context::default(), Action::Run(Command::Mesh));
+    let started = Instant::now();
+    while window.state().mesh.shown().is_none() {
+        assert!(started.elapsed() < Duration::from_secs(120), "the mesh is not finished");
+        std::thread::sleep(Duration::from_millis(10));
+        window.run_steps(1);
+    }
+    let mesh = &window.state().mesh.shown().expect("a mesh").ready.meshed;
+    assert_eq!((mesh.mesh.check(), mesh.posts.len()), (Ok(()), 1), "with the feed's line");
     window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
     settle(&mut window);
     assert_eq!(project(&window), after, "the feed is one step, undone to the bit");

@@ -5,6 +5,7 @@ use crate::cage::{CageError, PoseError, PresetError};
 use crate::deform::DeformError;
 use crate::distortion::CompensationError;
 use crate::geometry::DVec3;
+use crate::project::BodiesError;
 use crate::task::Cancelled;
 use crate::tet::{BlockError, EncloseError, TetError};
 use crate::tlm::TlmError;
@@ -87,9 +88,21 @@ pub enum PipelineError {
     /// The field cannot be solved.
     #[error("solver: {0}")]
     Solver(TlmError),
-    /// What works on the patch's template alone was asked of imported bodies.
-    #[error("imported bodies cannot be {0} yet: only the patch's template can; export them for another program")]
-    TemplateOnly(&'static str),
+    /// Imported bodies cannot be solved without a feed.
+    #[error("the imported bodies have no feed: place one between two metal bodies")]
+    NoFeed,
+    /// The feed does not belong to the bodies.
+    #[error("bodies: {0}")]
+    Feed(BodiesError),
+    /// The surface of imported bodies cannot be triangulated anew.
+    #[error("the bodies cannot be meshed near ({:.3}, {:.3}, {:.3}) mm: draw them more exactly there", place_mm[0], place_mm[1], place_mm[2])]
+    Unmeshable {
+        /// The place, mm.
+        place_mm: [f64; 3],
+    },
+    /// Nothing of the feed's line is in the mesh.
+    #[error("there is no room beside the feed's line: move the feed away from edges of metal")]
+    NoRoomForFeed,
     /// A cylinder was asked for where there is none.
     #[error("there is no exact cylinder: only a single bend without hand edits has one")]
     NoCylinder,
@@ -105,7 +118,7 @@ impl PipelineError {
         let in_mm = |places: &[DVec3]| places.iter().map(|p| p.to_array().map(to_mm)).collect();
         match self {
             Self::Crossing { places_mm, .. } => places_mm.clone(),
-            Self::Folded { at_mm, .. } => vec![*at_mm],
+            Self::Folded { at_mm: place_mm, .. } | Self::Unmeshable { place_mm } => vec![*place_mm],
             Self::Mesh(EncloseError::Air(error)) => in_mm(error.places()),
             Self::Mesh(EncloseError::Block(BlockError::Folded { at, .. })) => in_mm(&[*at]),
             _ => Vec::new(),

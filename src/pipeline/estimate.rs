@@ -9,13 +9,15 @@
 //! Source of the quality factor: \[BAL16\] section 14.2 (bandwidth of a rectangular patch).
 
 use super::PipelineError;
+use super::bodies;
 use super::mesh::{Density, Shape, longest_air_edge};
 use super::scene::Scene;
 use super::solve::{SolveSettings, StopRule};
 use crate::antenna::PatchParams;
 use crate::deform::SmoothMap;
-use crate::geometry::{DVec2, DVec3};
-use crate::project::{CompensationMode, Project};
+use crate::geometry::tri_mesh::doubled_area_vector;
+use crate::geometry::{DVec2, DVec3, RegionRole};
+use crate::project::{BodiesSpec, CompensationMode, Project};
 use crate::tlm::Pulse;
 use crate::units::{C0, from_mm};
 use std::f64::consts::{LN_10, PI};
@@ -46,6 +48,9 @@ const SHORTENED: f64 = 0.87;
 /// Path of light in a time step over the shortest edges of substrate and pin.
 const STEP_OVER_LAYER: f64 = 0.127;
 const STEP_OVER_PIN: f64 = 0.165;
+/// The same for imported bodies: over the edges at rims of metal, and over the thickness of the thinnest body.
+const STEP_OVER_RIM: f64 = 0.15;
+const STEP_OVER_SIDE: f64 = 0.25;
 /// Bytes for each cell: coefficients and state of the field, and the mesh beside them.
 const BYTES_PER_TET: f64 = 800.0;
 /// Meshing and preparing one cell, s.
@@ -65,8 +70,8 @@ pub fn estimate(
     settings: &SolveSettings,
     speed: f64,
 ) -> Result<Estimate, PipelineError> {
-    if project.bodies.is_some() {
-        return Err(PipelineError::TemplateOnly("solved"));
+    if let Some(bodies) = &project.bodies {
+        return estimate_bodies(bodies, settings, speed);
     }
     let [lo, hi] = settings.band;
     let pulse = Pulse::new(lo, hi)?;
@@ -87,6 +92,42 @@ pub fn estimate(
     let layer = rim.min(params.height / fineness.layers as f64);
     let dt = (STEP_OVER_LAYER * layer).min(STEP_OVER_PIN * pin) / C0;
     let time = duration(&params, settings, &pulse);
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive, and saturating")]
+    let count = |x: f64| x as usize;
+    Ok(Estimate {
+        n_tets: count(n_tets),
+        dt,
+        n_steps: count(time / dt),
+        bytes: count(BYTES_PER_TET * n_tets),
+        seconds: n_tets * (time / dt / speed.max(1.0) + SECONDS_PER_TET),
+    })
+}
+
+/// A rough guess for imported bodies, flat or bent: cells within a factor of two, time of three.
+fn estimate_bodies(bodies: &BodiesSpec, settings: &SolveSettings, speed: f64) -> Result<Estimate, PipelineError> {
+    bodies.feed.ok_or(PipelineError::NoFeed)?;
+    let [lo, hi] = settings.band;
+    let pulse = Pulse::new(lo, hi)?;
+    let edges = bodies::edges(bodies, settings.mesh, settings.band);
+    let edge = f64::midpoint(edges.sizes.inner, edges.sizes.at_metal);
+    let plc = bodies.to_plc();
+    let area: f64 = (0..plc.facets.len()).map(|f| doubled_area_vector(plc.corners(f)).length() / 2.0).sum();
+    let (low, high) = bodies.bounds();
+    let reach = (high - low).length() / 2.0 + C0 / (lo + hi);
+    let sphere = 4.0 / 3.0 * PI * reach.powi(3) / (0.118 * edges.in_air.powi(3));
+    // Outlines of metal as if all were plates along the axes.
+    let metal = plc.solids().filter(|(_, r)| r.role == RegionRole::Conductor);
+    let outlines: f64 = metal
+        .map(|(id, _)| {
+            let (lo, hi) = plc.boundary(id).bounds();
+            2.0 * ((hi - lo).element_sum() - (hi - lo).min_element())
+        })
+        .sum();
+    let triangles = area / (2.0 * 0.433 * edge * edge) + RIM_TRIANGLES * outlines / edges.sizes.at_metal;
+    let n_tets = AIR_PER_TRIANGLE * triangles + FILLED * sphere;
+    let shortest = (STEP_OVER_RIM * edges.sizes.at_metal).min(STEP_OVER_SIDE * bodies::thinnest(bodies, &edges));
+    let dt = shortest / C0;
+    let time = (pulse.end() + 10.0 / lo).min(settings.longest);
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive, and saturating")]
     let count = |x: f64| x as usize;
     Ok(Estimate {

@@ -7,7 +7,7 @@
 
 use super::PipelineError;
 use super::fields::{Columns, Fields};
-use super::marks::marks;
+use super::marks::{marks, source_mark};
 use super::scene::{Scene, same_rest};
 use super::stages::{Deformed, Stages, Template};
 use crate::antenna::{PATCH, SUBSTRATE};
@@ -88,7 +88,8 @@ impl Live {
         let mut positions: Vec<DVec3> = moved.iter().map(|p| glam::Vec3::from_array(*p).as_dvec3()).collect();
         self.posed = Some((pose.clone(), moved));
         let mut figures = None;
-        let (mut thickness, mut placed) = (Vec::new(), Vec::new());
+        let mut thickness = Vec::new();
+        let mut placed: Vec<_> = project.bodies.iter().filter_map(|b| source_mark(b, &positions)).collect();
         if let Some(gauges) = &self.gauges {
             let Template { built, compensated, .. } = &gauges.template;
             let feed = Scene::feed(built);

@@ -2,7 +2,6 @@
 
 use super::mesh::Meshed;
 use crate::antenna::{Conductor, PatchParams};
-use crate::geometry::VertexId;
 use crate::tet::Metal;
 use crate::tlm::{Loads, Resistor};
 
@@ -17,16 +16,9 @@ pub(super) fn loads(params: &PatchParams, meshed: &Meshed, metal: Metal) -> Load
         Conductor::Perfect => None,
         Conductor::Sheet(resistance) => Some((name.to_owned(), sides * resistance)),
     });
-    let mut resistors = Vec::new();
-    for (chain, resistor) in meshed.posts.iter().zip(&params.resistors) {
-        let length =
-            |pair: &[VertexId]| meshed.mesh.vertices[pair[0].index()].distance(meshed.mesh.vertices[pair[1].index()]);
-        let total: f64 = chain.windows(2).map(length).sum();
-        resistors.extend(chain.windows(2).map(|pair| Resistor {
-            edge: [pair[0].min(pair[1]), pair[0].max(pair[1])],
-            resistance: resistor.resistance * length(pair) / total,
-        }));
-    }
+    let posts = meshed.posts.iter().zip(&params.resistors);
+    let resistors =
+        posts.flat_map(|(chain, resistor)| Resistor::along(&meshed.mesh, chain, resistor.resistance)).collect();
     Loads { sheets: sheets.collect(), resistors, ..Loads::default() }
 }
 

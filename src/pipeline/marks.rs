@@ -1,7 +1,8 @@
-//! Where the feed and the resistors meet the deformed patch, to be marked in a picture.
+//! Where the feed is and where resistors meet the deformed patch, to be marked in a picture.
 
 use crate::antenna::PatchParams;
 use crate::geometry::{DVec2, DVec3, Plc, VertexId};
+use crate::project::BodiesSpec;
 
 /// Vertices nearer to z = 0 than this lie in the patch's bottom plane, m: far below any thickness, above rounding.
 const FLATNESS: f64 = 1e-12;
@@ -13,17 +14,27 @@ pub enum MarkKind {
     Feed,
     /// The resistor of this number, of so many ohm.
     Resistor(usize, f64),
+    /// A source of so many ohm across a gap between bodies.
+    Source(f64),
 }
 
-/// A place on the deformed patch.
+/// A place on the deformed antenna.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mark {
     /// What stands there.
     pub kind: MarkKind,
-    /// On the patch's bottom, m.
+    /// On the patch's bottom, or in the middle of the gap, m.
     pub at: DVec3,
-    /// The deformed surface's unit normal there, away from the ground.
-    pub up: DVec3,
+    /// The deformed patch's unit normal there, away from the ground; a gap has none.
+    pub up: Option<DVec3>,
+}
+
+/// The mark of the bodies' feed, if they have one; the first of `positions`, m, are those of their vertices.
+#[must_use]
+pub(super) fn source_mark(bodies: &BodiesSpec, positions: &[DVec3]) -> Option<Mark> {
+    let ohm = bodies.feed?.ohm;
+    let [from, to] = bodies.gap().ok()??.ends.map(|v| positions[v.index()]);
+    Some(Mark { kind: MarkKind::Source(ohm), at: from.midpoint(to), up: None })
 }
 
 /// The marks of an antenna whose flat surface is carried to `positions`, m; a place that no facet holds has none.
@@ -44,7 +55,7 @@ pub(super) fn marks(built: &PatchParams, flat: &Plc, positions: &[DVec3]) -> Vec
             // Whichever way the facet is wound, flat it faces up.
             let turn = (b - a).perp_dot(c - a).signum();
             let up = (turn * (q - p).cross(r - p)).try_normalize()?;
-            Some(Mark { kind, at, up })
+            Some(Mark { kind, at, up: Some(up) })
         })
     });
     found.collect()
@@ -94,7 +105,8 @@ mod tests {
                 let far = mark.at.distance(at);
                 assert!(far < from_mm(2.0 * project.settings.tolerance_mm), "{compensation:?}, {mark:?}: {far} m off");
                 let normal = jacobian.x_axis.cross(jacobian.y_axis).normalize_or_zero();
-                assert!(mark.up.dot(normal) > 0.98, "{compensation:?}: {} and {normal}", mark.up);
+                let up = mark.up.expect("the patch has two sides");
+                assert!(up.dot(normal) > 0.98, "{compensation:?}: {up} and {normal}");
             }
         }
     }

@@ -2,6 +2,7 @@
 
 use super::PipelineError;
 use super::scene::Scene;
+use super::solve::SolveSettings;
 use super::stages::{Template, prepare};
 use crate::antenna::PatchParams;
 use crate::deform::{Carry, DeformError, SmoothMap, Warp};
@@ -71,11 +72,11 @@ pub struct Meshed {
 }
 
 /// Smallest cells named in a report.
-const N_WORST: usize = 10;
+pub(super) const N_WORST: usize = 10;
 /// Top of the band over the resonance of an ideal cavity under the patch, which lies above the patch's own.
 const TOP_OVER_CAVITY: f64 = 1.2;
 /// Growth of the edge length with the distance: less makes many cells, more makes long ones beside short ones.
-const GRADING: f64 = 0.35;
+pub(super) const GRADING: f64 = 0.35;
 /// Times that the antenna is meshed finer where its edges leave the smooth map by more than the tolerance.
 const RETRIES: usize = 4;
 
@@ -85,7 +86,7 @@ pub(super) struct Fineness {
     pub(super) inner: f64,
     pub(super) layers: usize,
     /// Edges per wavelength in air at the top of the band.
-    per_wavelength: f64,
+    pub(super) per_wavelength: f64,
 }
 
 impl Density {
@@ -105,8 +106,19 @@ impl Density {
 /// # Errors
 /// [`PipelineError`] naming what to change.
 pub fn mesh(project: &Project, shape: Shape, settings: MeshSettings, task: &Task) -> Result<Meshed, PipelineError> {
-    if project.bodies.is_some() {
-        return Err(PipelineError::TemplateOnly("meshed"));
+    mesh_band(project, shape, settings, SolveSettings::usual_band(project), task)
+}
+
+/// [`mesh`] for a band, Hz; the template's mesh is made for its own resonance.
+pub(super) fn mesh_band(
+    project: &Project,
+    shape: Shape,
+    settings: MeshSettings,
+    band: [f64; 2],
+    task: &Task,
+) -> Result<Meshed, PipelineError> {
+    if let Some(bodies) = &project.bodies {
+        return super::bodies::mesh((project, bodies), shape, settings, band, task);
     }
     let tolerance = from_mm(project.settings.tolerance_mm);
     match shape {

@@ -10,6 +10,7 @@
 //! it. A [`MeshJob`](mesh_job::MeshJob) fills antenna and air with tetrahedra beside all that, and a
 //! [`SolveJob`](solve_job::SolveJob) solves the field in them.
 
+mod bodies;
 pub mod compare_job;
 mod error;
 mod estimate;

@@ -3,14 +3,14 @@
 use super::PipelineError;
 use super::loads::loads;
 use super::looks::Looks;
-use super::mesh::{MeshSettings, Meshed, Shape, mesh};
+use super::mesh::{MeshSettings, Meshed, Shape, mesh_band};
 use crate::project::Project;
 use crate::results::{
     FarField, FeedLine, FittedResonance, Sweep, continued_sweep, far_fields, fit, fitted_resonance, frequencies, sweep,
 };
 use crate::task::Task;
 use crate::tlm::{
-    Checkpoint, FieldRecorder, Huygens, Network, NetworkSettings, Pulse, Record, Run, StepLimit, TlmError,
+    Checkpoint, FieldRecorder, Huygens, Loads, Network, NetworkSettings, Pulse, Record, Run, StepLimit, TlmError,
 };
 use crate::units::{C0, from_mm};
 use serde::{Deserialize, Serialize};
@@ -46,9 +46,13 @@ impl SolveSettings {
         Self { mesh, band, stop: StopRule::Decay { db: 40.0 }, longest: 4e-9, pattern_freqs, edge_correction: true }
     }
 
-    /// From a third below to a third above the resonance of an ideal cavity under the patch, Hz.
+    /// From a third below to a third above the resonance of an ideal cavity under the patch, Hz; of imported bodies,
+    /// around half a wave along the fed metal.
     #[must_use]
     pub fn usual_band(project: &Project) -> [f64; 2] {
+        if let Some(bodies) = &project.bodies {
+            return super::bodies::usual_band(bodies);
+        }
         let params = project.antenna.to_params();
         let cavity = C0 / (2.0 * params.length * params.substrate.eps_r.sqrt());
         [cavity * 2.0 / 3.0, cavity * 4.0 / 3.0]
@@ -187,16 +191,26 @@ pub fn solve(
     let started = Instant::now();
     let [lo, hi] = settings.band;
     let pulse = Pulse::new(lo, hi)?;
-    let meshed = mesh(project, shape, settings.mesh, task)?;
+    let feed = match &project.bodies {
+        Some(bodies) => Some(bodies.feed.ok_or(PipelineError::NoFeed)?),
+        None => None,
+    };
+    let meshed = mesh_band(project, shape, settings.mesh, settings.band, task)?;
     let how = NetworkSettings {
         step: StepLimit::Clip(CLIPPED),
         edge_correction: settings.edge_correction,
-        loads: loads(&project.antenna.to_params(), &meshed, settings.mesh.metal),
+        loads: match feed {
+            Some(feed) => Loads { port: super::bodies::port(&meshed, feed.ohm), ..Loads::default() },
+            None => loads(&project.antenna.to_params(), &meshed, settings.mesh.metal),
+        },
         ..NetworkSettings::new(pulse.center)
     };
     let network = Network::<f32>::new(&meshed.mesh, &how, task)?;
     let port_impedance = network.port_impedance.ok_or(TlmError::NoPort)?;
-    let line = feed_line(project, port_impedance);
+    let line = match feed {
+        Some(_) => FeedLine { impedance: port_impedance, length: 0.0, eps_r: 1.0, reference: REFERENCE },
+        None => feed_line(project, port_impedance),
+    };
     let huygens = Huygens::new(&meshed.mesh)?;
     let fields = FieldRecorder::new(&meshed.mesh, &network, &huygens, &settings.pattern_freqs)?;
     let mut run = Run::new(&network, pulse).with_fields(fields);

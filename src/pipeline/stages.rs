@@ -2,7 +2,7 @@
 
 use super::PipelineError;
 use super::fields::{Columns, Fields};
-use super::marks::{Mark, marks};
+use super::marks::{Mark, marks, source_mark};
 use super::scene::Scene;
 use crate::antenna::{PATCH, PatchParams, Resistor, flat_complex};
 use crate::cage::Cage;
@@ -110,7 +110,7 @@ fn run_template(project: &Project, task: &Task) -> Result<Stages, PipelineError>
     let posed = compensated.map.pose().vertices().to_vec();
     let sheet = |scale| Sheet { scale, warp: &compensated.warp, map: &compensated.map };
     let carry = Carry::new(&compensated.map, &compensated.warp, Scene::feed(built))?;
-    let surface = guarded_split(&flat_complex(built)?, |p| carry.carry(p), project.settings.tolerance_mm, task)?;
+    let surface = guarded_split(&flat_complex(built)?, |p| carry.carry(p), splitting(project), task)?;
     let positions = surface.positions();
     let placement: Placement = surface.images.iter().copied().collect();
     let reference = reference(&surface.flat, &placement, compensated);
@@ -149,13 +149,13 @@ fn run_bodies(project: &Project, bodies: &BodiesSpec, task: &Task) -> Result<Sta
     let posed = scene.checked_pose()?;
     let map = scene.map(&posed)?;
     check_folds(&map, bodies.bounds())?;
-    let surface = guarded_split(&bodies.to_plc(), |p| map.positions(p), project.settings.tolerance_mm, task)?;
+    let surface = guarded_split(&bodies.to_plc(), |p| map.positions(p), splitting(project), task)?;
     let reference = surface.flat.vertices.clone();
     let placement = Placement { sweep: vec![0.0; reference.len()], rest: reference.clone() };
     let deformed = Deformed {
         cage: Arc::clone(&scene.cage),
         posed,
-        marks: Vec::new(),
+        marks: source_mark(bodies, &surface.images).into_iter().collect(),
         fields: Fields::new(&surface.flat, &reference, &surface.images),
         flat: Arc::new(surface.flat),
         positions: surface.images,
@@ -207,15 +207,14 @@ pub fn exact_cylinder(project: &Project, task: &Task) -> Result<Option<Plc>, Pip
     let scene = Scene::new(project)?;
     let Some(cylinder) = scene.cylinder() else { return Ok(None) };
     let flat = flat(project)?;
-    let tolerance_mm = project.settings.tolerance_mm;
     if project.bodies.is_some() {
-        let surface = guarded_split(&flat, |p| cylinder.positions(p), tolerance_mm, task)?;
+        let surface = guarded_split(&flat, |p| cylinder.positions(p), splitting(project), task)?;
         return Ok(Some(surface.flat.with_vertices(surface.images)));
     }
     let params = project.antenna.to_params();
     let identity = Warp::identity(DVec2::new(params.ground_width, params.ground_length) / 2.0);
     let carry = Carry::new(&cylinder, &identity, Scene::feed(&params))?;
-    let surface = guarded_split(&flat, |p| carry.carry(p), tolerance_mm, task)?;
+    let surface = guarded_split(&flat, |p| carry.carry(p), splitting(project), task)?;
     Ok(Some(surface.flat.with_vertices(surface.positions())))
 }
 
@@ -297,7 +296,7 @@ fn scaled(params: &PatchParams, scale: DVec2) -> PatchParams {
 const FOLD_SAMPLES: [usize; 3] = [21, 21, 3];
 
 /// Refuses a map that turns a sample of the antenna inside out: needed for a valid surface, not sufficient.
-fn check_folds(map: &impl SmoothMap, (lo, hi): (DVec3, DVec3)) -> Result<(), PipelineError> {
+pub(super) fn check_folds(map: &impl SmoothMap, (lo, hi): (DVec3, DVec3)) -> Result<(), PipelineError> {
     let [nx, ny, nz] = FOLD_SAMPLES;
     let at = |i: usize, n: usize| i as f64 / (n - 1) as f64;
     let points: Vec<DVec3> = (0..nx * ny * nz)
@@ -315,17 +314,21 @@ fn check_folds(map: &impl SmoothMap, (lo, hi): (DVec3, DVec3)) -> Result<(), Pip
 /// Finer tolerances tried when the split surface crosses itself although the map does not fold.
 const RETRIES: usize = 2;
 
+/// How finely a project's surfaces are split.
+pub(super) fn splitting(project: &Project) -> SplitSettings {
+    SplitSettings::with_tolerance(from_mm(project.settings.tolerance_mm))
+}
+
 /// Splits a flat surface, and finer where its image crosses itself.
-fn guarded_split<P: Image>(
+pub(super) fn guarded_split<P: Image>(
     flat: &Plc,
     carry: impl Fn(&[DVec3]) -> Result<Vec<P>, DeformError>,
-    tolerance_mm: f64,
+    mut settings: SplitSettings,
     task: &Task,
 ) -> Result<SplitSurface<P>, PipelineError> {
-    let mut tolerance = from_mm(tolerance_mm);
     for attempt in 0..=RETRIES {
         let phase = task.phase("splitting edges", 0);
-        let surface = split(flat.clone(), &carry, SplitSettings::with_tolerance(tolerance), task)?;
+        let surface = split(flat.clone(), &carry, settings, task)?;
         phase.advance(surface.images.len());
         let faces: Vec<_> = surface.flat.facets.iter().map(|f| f.vertices).collect();
         let crossings = intersect::crossings(&surface.positions(), &faces);
@@ -335,7 +338,7 @@ fn guarded_split<P: Image>(
         if attempt == RETRIES {
             return Err(crossing_error(&surface, &crossings));
         }
-        tolerance /= 2.0;
+        settings.tolerance /= 2.0;
     }
     unreachable!("the last attempt returns")
 }

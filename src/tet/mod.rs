@@ -34,6 +34,7 @@ mod optimise;
 mod order;
 mod quality;
 mod recover;
+mod remesh;
 mod seeds;
 mod shape;
 mod sizing;
@@ -52,5 +53,7 @@ pub use quality::{
     tet_qualities,
 };
 pub use recover::{EdgeSplit, RecoveryReport};
+pub use remesh::{Sizes, remesh};
 pub use sizing::{Sizing, SizingSettings};
+pub use sphere::sphere;
 pub use surface::{Surface, SurfaceFacet, SurfaceFault};

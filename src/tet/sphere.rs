@@ -6,7 +6,8 @@ use std::collections::HashMap;
 /// Points and outward triangles of a sphere about `center`, its edges at most about `edge` long.
 ///
 /// An icosahedron whose faces are divided into n² triangles each and moved onto the sphere.
-pub(super) fn sphere(center: DVec3, radius: f64, edge: f64) -> (Vec<DVec3>, Vec<[usize; 3]>) {
+#[must_use]
+pub fn sphere(center: DVec3, radius: f64, edge: f64) -> (Vec<DVec3>, Vec<[usize; 3]>) {
     let (corners, faces) = icosahedron();
     // The edge of the icosahedron of radius 1 is 1.05; in the middle of a face the projection stretches it by 1.18.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 1 and a few hundred")]

@@ -3,7 +3,7 @@
 use super::TlmError;
 use super::blocks::{A_INVERSE, ADMITTANCE, LOSS, triangle};
 use super::cell::{Cell, EDGES, face_mass};
-use super::loads::Loads;
+use super::loads::{Loads, LumpedPort, Resistor};
 use super::network::NetworkSettings;
 use super::outgoing::OuterSphere;
 use super::port::PortMode;
@@ -216,6 +216,18 @@ impl<'a> Assembly<'a> {
     pub(super) fn conductance(&self, edge: [VertexId; 2]) -> f64 {
         let resistors = self.loads.resistors.iter().filter(|r| r.edge == edge).map(|r| ETA0 / r.resistance);
         resistors.sum::<f64>() + self.faces.sheets.get(&edge).copied().unwrap_or(0.0)
+    }
+
+    /// Conductance of the lumped port's source at its edges, in units of the free-space admittance.
+    pub(super) fn source(&self) -> HashMap<[VertexId; 2], f64> {
+        let port = self.loads.port.iter();
+        let shares = port.flat_map(|port| Resistor::along(self.mesh, &port.chain, port.resistance));
+        shares.map(|share| (share.edge, ETA0 / share.resistance)).collect()
+    }
+
+    /// The lumped port, if there is one.
+    pub(super) fn lumped_port(&self) -> Option<&LumpedPort> {
+        self.loads.port.as_ref()
     }
 
     fn region(&self, tet: usize) -> usize {

@@ -14,6 +14,9 @@ pub enum TlmError {
         /// Name of the port's group.
         port: String,
     },
+    /// The lumped port's chain is not there.
+    #[error("the lumped port does not lie along edges of the mesh between two conductors")]
+    NoGap,
     /// A lossy sheet that the mesh does not have.
     #[error("the mesh has no conductor named \"{name}\" that could be a lossy sheet")]
     NoSheet {

@@ -13,6 +13,29 @@ pub struct Resistor {
     pub resistance: f64,
 }
 
+/// A source with a resistance across a gap between conductors.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LumpedPort {
+    /// Vertices of the mesh from one side of the gap to the other, each joined to the next by an edge.
+    pub chain: Vec<VertexId>,
+    /// Of the source, ohm.
+    pub resistance: f64,
+}
+
+impl Resistor {
+    /// A resistance shared by the edges of a chain of vertices in proportion to their length.
+    #[must_use]
+    pub fn along(mesh: &TetMesh, chain: &[VertexId], resistance: f64) -> Vec<Self> {
+        let length = |pair: &[VertexId]| mesh.vertices[pair[0].index()].distance(mesh.vertices[pair[1].index()]);
+        let total: f64 = chain.windows(2).map(length).sum();
+        let share = |pair: &[VertexId]| Self {
+            edge: [pair[0].min(pair[1]), pair[0].max(pair[1])],
+            resistance: resistance * length(pair) / total,
+        };
+        chain.windows(2).map(share).collect()
+    }
+}
+
 /// Loads of a mesh; by default there are none.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Loads {
@@ -20,6 +43,8 @@ pub struct Loads {
     pub sheets: Vec<(String, f64)>,
     /// Resistors at edges.
     pub resistors: Vec<Resistor>,
+    /// Where the antenna is fed if not by a line; what the source's own resistance takes is not counted as lost.
+    pub port: Option<LumpedPort>,
     /// Relative permeability of regions where it is not 1.
     pub permeable: Vec<(RegionId, f64)>,
 }
@@ -35,6 +60,7 @@ impl Loads {
             positive("the surface resistance", *resistance)?;
         }
         self.resistors.iter().try_for_each(|r| positive("a resistor", r.resistance))?;
+        self.port.iter().try_for_each(|port| positive("the source's resistance", port.resistance))?;
         self.permeable.iter().try_for_each(|(_, mu_r)| positive("a relative permeability", *mu_r))
     }
 

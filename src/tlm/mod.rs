@@ -39,7 +39,7 @@ mod tests_cavity;
 pub use checkpoint::Checkpoint;
 pub use error::TlmError;
 pub use huygens::{ClosedSurface, Huygens};
-pub use loads::{Loads, Resistor};
+pub use loads::{Loads, LumpedPort, Resistor};
 pub use network::{Network, NetworkSettings, StepLimit, orthogonality_error};
 pub use real::Real;
 pub use recorder::{FieldRecorder, SurfaceField};

@@ -83,16 +83,28 @@ pub struct Network<T> {
     tets: Vec<u32>,
     /// Cells of lossy material.
     pub(super) lossy: Vec<Lossy>,
+    /// The lumped port.
+    pub(super) gap: Option<Gap>,
     /// Edges with resistors or on lossy sheets, and their conductance in units of the free-space admittance.
     pub(super) resistors: Vec<(u32, f64)>,
     /// Number of cells.
     pub n_tets: usize,
     /// Time step, s.
     pub dt: f64,
-    /// Characteristic impedance of the port as meshed, ohm; `None` without a port.
+    /// Characteristic impedance of the port as meshed, or the resistance of the lumped one, ohm; `None` without a port.
     pub port_impedance: Option<f64>,
     /// Cells whose stubs were clipped to allow the step.
     pub n_clipped: usize,
+}
+
+/// The edges of a lumped port. They hold the source's resistance, each a part of it by length, so that one current
+/// through all of them makes one source: `2 v_inc / R`.
+#[derive(Clone, Debug)]
+pub(super) struct Gap {
+    /// Edges from one side to the other, and 1 where the chain runs towards the vertex with the higher number, else -1.
+    pub(super) edges: Vec<(u32, f64)>,
+    /// Of the source, ohm.
+    pub(super) resistance: f64,
 }
 
 /// What a cell loses: `V^T G V`, without what stands for the outside (outer boundary, port).
@@ -107,7 +119,8 @@ impl<T: Real> Network<T> {
     /// Computes the coefficients of a mesh with at most one port.
     ///
     /// # Errors
-    /// [`TlmError::NotCoaxial`], [`TlmError::NoSheet`], [`TlmError::NotPositive`], [`TlmError::Cancelled`].
+    /// [`TlmError::NotCoaxial`], [`TlmError::NoSheet`], [`TlmError::NoGap`], [`TlmError::NotPositive`],
+    /// [`TlmError::Cancelled`].
     pub fn new(mesh: &TetMesh, settings: &NetworkSettings, task: &Task) -> Result<Self, TlmError> {
         let phase = task.phase("preparing cells", 3);
         settings.loads.check(mesh)?;
@@ -134,6 +147,7 @@ impl<T: Real> Network<T> {
             admittance: mode.admittance,
         };
         let line = assembly.port().map(line);
+        let gap = slots.gap(&assembly)?;
         phase.advance(1);
         Ok(Self {
             outgoing,
@@ -144,7 +158,11 @@ impl<T: Real> Network<T> {
             starts,
             places,
             weights,
-            port_impedance: line.as_ref().map(|line| ETA0 / line.admittance),
+            port_impedance: match &gap {
+                Some(gap) => Some(gap.resistance),
+                None => line.as_ref().map(|line| ETA0 / line.admittance),
+            },
+            gap,
             tets: slots.tets(&assembly),
             lossy: slots.lossy(&assembly),
             resistors: slots.resistors(&assembly),

@@ -2,6 +2,7 @@
 
 use super::blocks::{LANES, Observe, Outside, Ports, Scatter, State};
 use super::modes::Modes;
+use super::network::Gap;
 use super::outgoing::Outgoing;
 use super::slots::Chunk;
 use super::{FieldRecorder, Network, Pulse, Real, TlmError};
@@ -168,8 +169,11 @@ impl<'a, T: Real> Run<'a, T> {
     fn step(&mut self) {
         let step = self.record.total.len();
         let at = |step: f64| self.pulse.at(step * self.network.dt);
-        let incident = if self.impressed.is_none() { at(step as f64) } else { 0.0 };
-        let current = if self.impressed.is_some() { at(step as f64 + 0.5) } else { 0.0 };
+        let network = self.network;
+        let gap = network.gap.as_ref().filter(|_| self.impressed.is_none());
+        let is_line = self.impressed.is_none() && gap.is_none();
+        let incident = if is_line { at(step as f64) } else { 0.0 };
+        let later = at(step as f64 + 0.5);
         let arch = pulp::Arch::new();
         let (total, into_line) = self.meet_line(arch, incident);
         let leaving = self.leave(arch);
@@ -177,13 +181,33 @@ impl<'a, T: Real> Run<'a, T> {
         self.connect_shared();
         std::mem::swap(&mut self.voltages, &mut self.next);
         if let Some(edge) = self.impressed {
-            self.voltages[edge as usize] -= T::new(0.5 * ETA0 * current) * self.network.weights[edge as usize];
+            self.impress(edge, later);
         }
+        // A lumped port's wave is that of its edges, half a step later than a line's.
+        let (incident, total) = gap.map_or((incident, total), |gap| (later, self.drive(gap, later)));
         if let Some(fields) = &mut self.fields {
             fields.sample(step, &self.voltages, self.reflected.as_flattened().as_flattened());
         }
         self.record.incident.push(incident);
         self.record.total.push(total);
+    }
+
+    /// Adds a current along an edge, A, towards its vertex with the higher number.
+    fn impress(&mut self, edge: u32, current: f64) {
+        let edge = edge as usize;
+        self.voltages[edge] -= T::new(0.5 * ETA0 * current) * self.network.weights[edge];
+    }
+
+    /// Adds the current of a lumped port's incident wave; the voltage across the gap.
+    fn drive(&mut self, gap: &Gap, incident: f64) -> f64 {
+        let current = 2.0 * incident / gap.resistance;
+        let mut across = 0.0;
+        for &(edge, sign) in &gap.edges {
+            self.impress(edge, sign * current);
+            // The current piles up charge where it goes, so the field points back.
+            across -= sign * self.voltages[edge as usize].to_f64();
+        }
+        across
     }
 
     /// All cells, and the edges that only one chunk has.

@@ -3,10 +3,11 @@
 //! A chunk is what one thread works on at a time: it scatters in its blocks and at once connects the edges that no other
 //! chunk has, while what its cells reflect is still in the cache. Edges of several chunks come last.
 
+use super::TlmError;
 use super::assembly::{Assembly, N_PARTS};
 use super::blocks::{ADMITTANCE, Block, Boundary, LANES};
 use super::cell::EDGES;
-use super::network::Lossy;
+use super::network::{Gap, Lossy};
 use super::real::Real;
 use crate::geometry::VertexId;
 use rayon::prelude::*;
@@ -126,6 +127,22 @@ impl Slots {
         edges.filter(|(_, conductance)| *conductance > 0.0).collect()
     }
 
+    /// The edges of the lumped port, if there is one.
+    ///
+    /// # Errors
+    /// [`TlmError::NoGap`]
+    pub(super) fn gap(&self, assembly: &Assembly<'_>) -> Result<Option<Gap>, TlmError> {
+        let Some(port) = assembly.lumped_port() else { return Ok(None) };
+        let edge = |pair: &[VertexId]| {
+            let ends = [pair[0].min(pair[1]), pair[0].max(pair[1])];
+            let number = (0..).zip(&self.edge_ends).find(|(_, e)| **e == ends)?.0;
+            Some((number, if pair[0] < pair[1] { 1.0 } else { -1.0 }))
+        };
+        let edges: Option<Vec<_>> = port.chain.windows(2).map(edge).collect();
+        let edges = edges.filter(|e| !e.is_empty()).ok_or(TlmError::NoGap)?;
+        Ok(Some(Gap { edges, resistance: port.resistance }))
+    }
+
     pub(super) fn fill<T: Real>(&self, assembly: &Assembly<'_>, x: f64) -> (Vec<Block<T>>, Vec<Boundary<T>>) {
         let lanes = self.cells.par_chunks(LANES).zip(self.edges.par_chunks(LANES)).enumerate();
         let blocks = lanes.map(|(b, (cells, edges))| {
@@ -158,7 +175,9 @@ impl Slots {
         (0..self.n_edges).for_each(|e| starts[e + 1] += starts[e]);
         let mut next = starts.clone();
         let mut places = vec![0_u32; starts[self.n_edges] as usize];
-        let mut sums: Vec<f64> = self.edge_ends.iter().map(|&edge| assembly.conductance(edge)).collect();
+        let source = assembly.source();
+        let at_edge = |edge| assembly.conductance(edge) + source.get(&edge).copied().unwrap_or(0.0);
+        let mut sums: Vec<f64> = self.edge_ends.iter().map(|&edge| at_edge(edge)).collect();
         for (lane, ports) in self.edges.iter().enumerate() {
             let (b, w) = (lane / LANES, lane % LANES);
             for (e, &edge) in ports.iter().enumerate().filter(|(_, edge)| live(**edge)) {

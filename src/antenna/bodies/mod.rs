@@ -16,6 +16,7 @@
 
 mod cells;
 mod fault;
+mod foil;
 pub mod gap;
 mod imprint;
 mod inspect;
@@ -23,6 +24,7 @@ mod inspect;
 pub(crate) mod tests;
 
 pub use fault::{BodyFault, WeldError};
+pub use foil::{WithSheets, with_sheets};
 pub use gap::{Gap, GapError, gap, upright};
 
 use super::Dielectric;
