@@ -2,18 +2,19 @@
 
 use super::body_rows::body_rows;
 use super::dialogs::{PathField, Purpose, problem_with};
+use super::draft::{self, Draft};
 use super::export_dialog::{answer, work};
 use super::field::{Choices, rows};
 use super::outbox::{Action, Outbox};
+use super::places;
 use super::theme::Tokens;
 use super::ui_state::UiState;
 use crate::antenna::{BodyFault, WeldError};
-use crate::geometry::DVec3;
 use crate::io::bodies::{Solid, name_plainly, read};
 use crate::io::outline::LENGTH_UNITS;
 use crate::project::{BodiesSpec, BodyKind, BodySpec, Edit, LooseBody, MaterialSpec, WELD_MM};
+use crate::render::{Camera, Vec3};
 use crate::task::{Progress, Task};
-use crate::units::to_mm;
 use egui::{ComboBox, DragValue, ProgressBar, RichText, ScrollArea, Spinner, Ui};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -23,6 +24,8 @@ use std::time::Duration;
 
 /// Range of the weld tolerance, mm.
 const WELD_RANGE_MM: (f64, f64) = (1e-6, 1.0);
+/// Distance of the eye from the bodies over the diagonal of the box around them.
+const DISTANCE: f32 = 3.5;
 /// Time between two looks at how far the work is.
 const PAUSE: Duration = Duration::from_millis(100);
 /// Height of the lists of bodies and of problems, points.
@@ -40,6 +43,10 @@ pub(super) struct BodiesDialog {
     /// What was read and welded last.
     found: Option<(Asked, Found)>,
     working: Option<Working>,
+    /// The camera from before the bodies were looked at.
+    before: Option<Camera>,
+    /// What was looked at last.
+    looked_at: Option<[Vec3; 2]>,
 }
 
 /// A thread that reads and welds; it stops when this is dropped.
@@ -104,7 +111,7 @@ struct Welded {
     /// The bodies as read, without their surfaces.
     solids: Vec<Solid>,
     n_triangles: Vec<usize>,
-    size: DVec3,
+    draft: Draft,
     /// All bodies as metal, for what they are made of does not matter to their shape.
     spec: Result<BodiesSpec, Vec<BodyFault>>,
 }
@@ -119,6 +126,8 @@ impl BodiesDialog {
             own: own.to_vec(),
             found: None,
             working: None,
+            before: None,
+            looked_at: None,
         }
     }
 
@@ -126,6 +135,28 @@ impl BodiesDialog {
     #[cfg(test)]
     pub(super) fn task(&self) -> Option<&Task> {
         self.working.as_ref().map(|working| &working.task)
+    }
+
+    /// What the view shows of the bodies.
+    pub(super) fn draft(&self) -> Option<&Draft> {
+        let (_, found) = self.found.as_ref().filter(|_| !self.asked.files.is_empty())?;
+        found.as_ref().ok().map(|welded| &welded.draft)
+    }
+
+    /// Brings the bodies before the eye, once.
+    fn look(&mut self, state: &mut UiState) {
+        let Some(bounds) = self.draft().map(|draft| draft.bounds) else { return };
+        if self.looked_at.replace(bounds) != Some(bounds) {
+            state.show_mesh(false);
+            self.before.get_or_insert(state.camera);
+            let [lo, hi] = bounds;
+            state.look_at(lo.midpoint(hi), DISTANCE * lo.distance(hi));
+        }
+    }
+
+    /// Puts the camera back where it was.
+    pub(super) fn give_back(&mut self, state: &mut UiState) {
+        state.camera = self.before.take().unwrap_or(state.camera);
     }
 
     /// Draws the dialog; true when it is to be closed.
@@ -139,12 +170,13 @@ impl BodiesDialog {
         ui.add_space(4.0);
         rows(ui, "bodies", |ui| self.choices(ui));
         self.work(ui);
+        self.look(state);
         let current = self.found.as_ref().is_some_and(|(asked, _)| *asked == self.asked);
         let mut made = None;
         if self.asked.files.is_empty() {
             ui.label(RichText::new("No file yet: a body is a solid, a group or a node of a file.").weak());
         } else if current {
-            made = self.report(ui);
+            made = self.report(ui, state);
         } else if let Some(working) = &self.working {
             working.ui(ui);
         }
@@ -236,7 +268,7 @@ impl BodiesDialog {
     }
 
     /// The bodies with their materials, or what is wrong with them; what would be imported.
-    fn report(&mut self, ui: &mut Ui) -> Option<BodiesSpec> {
+    fn report(&mut self, ui: &mut Ui, state: &mut UiState) -> Option<BodiesSpec> {
         let error = Tokens::here(ui).error;
         let welded = match &self.found.as_ref()?.1 {
             Ok(welded) => welded,
@@ -262,7 +294,8 @@ impl BodiesDialog {
                 self.chosen.insert(notes[k].0.clone(), kind);
             }
         });
-        let [x, y, z] = welded.size.to_array().map(to_mm);
+        let [lo, hi] = welded.draft.bounds;
+        let [x, y, z] = (hi - lo).to_array();
         ui.label(format!("{} bodies, {x:.3} × {y:.3} × {z:.3} mm in all", welded.solids.len()));
         match &welded.spec {
             Ok(spec) => {
@@ -280,6 +313,7 @@ impl BodiesDialog {
                 ScrollArea::vertical().id_salt("faults").max_height(LIST_HEIGHT).show(ui, |ui| {
                     for fault in faults {
                         ui.add(egui::Label::new(RichText::new(fault.to_string()).color(error)).wrap());
+                        places::list(ui, &draft::places_mm(fault), state);
                     }
                 });
                 None
@@ -299,10 +333,7 @@ fn welded(asked: &Asked, task: &Task) -> Found {
     }
     name_plainly(&mut solids);
     let n_triangles = solids.iter().map(|s| s.surface.faces.len()).collect();
-    let (lo, hi) = solids
-        .iter()
-        .flat_map(|s| &s.surface.vertices)
-        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), &p| (lo.min(p), hi.max(p)));
+    let mut draft = Draft::new(solids.iter().map(|s| &s.surface));
     let loose: Vec<LooseBody> = solids
         .iter_mut()
         .map(|solid| LooseBody {
@@ -312,8 +343,11 @@ fn welded(asked: &Asked, task: &Task) -> Found {
         .collect();
     let spec = match BodiesSpec::weld(&loose, asked.weld_mm, task) {
         Ok(spec) => Ok(spec),
-        Err(WeldError::Faults(faults)) => Err(faults),
+        Err(WeldError::Faults(faults)) => {
+            draft.places_mm = faults.iter().flat_map(draft::places_mm).collect();
+            Err(faults)
+        }
         Err(WeldError::Cancelled(cancelled)) => return Err(cancelled.to_string()),
     };
-    Ok(Welded { solids, n_triangles, size: hi - lo, spec })
+    Ok(Welded { solids, n_triangles, draft, spec })
 }

@@ -5,6 +5,7 @@
 
 use super::bodies_dialog::BodiesDialog;
 use super::command::{Command, Facts};
+use super::draft::Draft;
 use super::export_dialog::ExportDialog;
 use super::mesh_export::MeshExport;
 use super::notices;
@@ -20,12 +21,15 @@ use super::theme::Tokens;
 use super::ui_state::UiState;
 use super::view_export::ViewExport;
 use crate::project::Example;
-use egui::{Context, Id, Key, Modal, RichText, TextEdit, Ui};
+use egui::{Align2, Color32, Context, Id, Key, Modal, RichText, TextEdit, Ui, vec2};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 /// Ending of project files.
 pub(super) const ENDING: &str = "json";
+
+/// Distance from the window's edge of a dialog that stands beside the view, points.
+const BESIDE: f32 = 8.0;
 
 /// What the chosen path is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -267,7 +271,14 @@ impl Dialog {
             return;
         }
         let frame = egui::Frame::window(&ctx.global_style()).inner_margin(16);
-        let modal = Modal::new(Id::unique("dialog")).frame(frame).show(ctx, |ui| {
+        let id = Id::unique("dialog");
+        let mut modal = Modal::new(id).frame(frame);
+        if matches!(self, Self::Bodies(_)) {
+            // Beside what the view shows of the bodies.
+            let area = Modal::default_area(id).anchor(Align2::LEFT_CENTER, vec2(BESIDE, 0.0));
+            modal = modal.area(area).backdrop_color(Color32::from_black_alpha(40));
+        }
+        let modal = modal.show(ctx, |ui| {
             ui.set_width(480.0);
             match self {
                 Self::None => true,
@@ -291,7 +302,18 @@ impl Dialog {
         });
         // A path dialog that was answered may already have been followed by another dialog.
         if modal.inner || (modal.should_close() && !self.is_working()) {
+            if let Self::Bodies(dialog) = self {
+                dialog.give_back(state);
+            }
             *self = Self::None;
+        }
+    }
+
+    /// Bodies that are looked at before they are imported.
+    pub(super) fn draft(&self) -> Option<&Draft> {
+        match self {
+            Self::Bodies(dialog) => dialog.draft(),
+            _ => None,
         }
     }
 

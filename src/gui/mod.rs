@@ -26,6 +26,7 @@ mod command_input;
 mod compare_session;
 mod dialogs;
 mod disk;
+mod draft;
 mod edit_commands;
 mod edit_overlay;
 mod edit_ui;

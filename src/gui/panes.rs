@@ -78,7 +78,13 @@ impl App {
         let refusals = [self.mesh.error(), self.solve.error()].into_iter().flatten();
         let places = refusals.flat_map(|refusal| refusal.places_mm(project)).chain(self.session.places_mm());
         let places_mm: Vec<[f64; 3]> = places.copied().collect();
-        let sources = Sources { session: &self.session, pose, mesh, solve, on_show, preview, places_mm: &places_mm };
+        let (session, places_mm, draft) = (&self.session, &places_mm[..], self.dialog.draft());
+        let mut sources = Sources { session, pose, mesh, solve, on_show, preview, places_mm, draft };
+        if let Some(draft) = draft {
+            // Alone, and not within the antenna whose place the bodies would take.
+            (sources.pose, sources.mesh, sources.solve) = (None, None, None);
+            (sources.on_show, sources.preview, sources.places_mm) = (None, None, &draft.places_mm);
+        }
         self.viewport.ui(ui, sources, &mut self.state, out);
     }
 

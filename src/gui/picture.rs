@@ -26,7 +26,7 @@ pub fn picture(project: &Project, deformed: &Deformed) -> anyhow::Result<Option<
     let state = UiState::default();
     let pose = session.pose().cloned();
     let on_show = session.shown().map(|s| OnShow { deformed: &s.deformed, serial: s.serial });
-    let subject = Subject { on_show, drawn: project, pose: pose.as_ref(), is_fixed: false };
+    let subject = Subject { on_show, drawn: Some(project), pose: pose.as_ref(), is_fixed: false };
     let scene = SceneBuilder::default().scene(subject, &state, Tokens::of(Theme::Light), Hot::default());
     let points = scene.lines.iter().flat_map(|l| l.positions.iter());
     let start = (Vec3::INFINITY, Vec3::NEG_INFINITY);

@@ -75,8 +75,8 @@ pub(super) fn rgba(color: Color32) -> Rgba {
 pub(super) struct Subject<'a> {
     /// The computed antenna.
     pub(super) on_show: Option<OnShow<'a>>,
-    /// Whose antenna is drawn for as long as nothing is computed.
-    pub(super) drawn: &'a Project,
+    /// Whose antenna is drawn for as long as nothing is computed, if any.
+    pub(super) drawn: Option<&'a Project>,
     pub(super) pose: Option<&'a Pose>,
     /// Whether the cage's vertices can be taken hold of.
     pub(super) is_fixed: bool,
@@ -155,7 +155,7 @@ impl SceneBuilder {
 
     fn antenna(&mut self, subject: Subject<'_>, state: &UiState, tokens: &Tokens) -> Option<(Surface, Lines)> {
         let shown = subject.on_show;
-        let drawn = if shown.is_none() { self.drawn_flat(subject.drawn) } else { None };
+        let drawn = subject.drawn.filter(|_| shown.is_none()).and_then(|project| self.drawn_flat(project));
         let (serial, flat, points) = match (shown, &drawn) {
             (Some(OnShow { deformed, serial }), _) => (serial, Arc::clone(&deformed.flat), &deformed.positions),
             (None, Some(flat)) => (0, Arc::clone(flat), &flat.vertices),

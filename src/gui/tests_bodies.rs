@@ -100,16 +100,23 @@ fn what_is_open_is_said_with_the_place_and_cannot_be_accepted() {
     std::fs::write(&path, OPEN).unwrap();
     let mut window = window();
     settle(&mut window);
-    let before = project(&window);
+    let (before, camera) = (project(&window), window.state().state.camera);
     open_dialog(&mut window);
     add(&mut window, &path);
     wait_for(&mut window, "\"lid\" is open at 3 edges, (2.500, 0.000, 0.000)");
     window.get_by_label("Import").click();
     window.run_steps(2);
     window.get_by_label("Import bodies");
+    assert!(window.query_by_label("Feed point").is_none(), "the view shows the lid alone");
+    window.get_by_label("2.5, 0.0, 0.0 mm").click();
+    lay_out(&mut window);
+    let target = window.state().state.camera.target;
+    assert!(target.distance(crate::render::Vec3::new(2.5, 0.0, 0.0)) < 1e-4, "looked at: {target}");
     window.get_by_label("Cancel").click();
     settle(&mut window);
     assert_eq!(project(&window), before, "nothing happened");
+    assert_eq!(window.state().state.camera, camera, "the eye is where it was");
+    window.get_by_label("Feed point");
 }
 
 #[test]

@@ -6,6 +6,7 @@
 //! began are driven by the pointer until a click. Places are points from the top left of the view.
 
 use super::compare_session::mode_text;
+use super::draft::Draft;
 use super::edit_overlay;
 use super::edit_ui::Outline;
 use super::heat::{Bar, Heated, OnShow, ticks};
@@ -81,6 +82,8 @@ pub(super) struct Sources<'a> {
     pub(super) preview: Option<CompensationMode>,
     /// Places to be marked, mm.
     pub(super) places_mm: &'a [[f64; 3]],
+    /// Bodies that are looked at before they are imported.
+    pub(super) draft: Option<&'a Draft>,
 }
 
 /// What a frame of the view works with.
@@ -92,6 +95,7 @@ struct Frame<'a> {
     on_show: Option<OnShow<'a>>,
     preview: Option<CompensationMode>,
     places_mm: &'a [[f64; 3]],
+    draft: Option<&'a Draft>,
     /// Handles in picture units.
     handles: &'a [Vec3],
     gizmo: Option<Gizmo>,
@@ -108,7 +112,7 @@ impl Frame<'_> {
     }
 
     fn subject(&self) -> Subject<'_> {
-        let drawn = self.session.project();
+        let drawn = Some(self.session.project()).filter(|_| self.draft.is_none());
         Subject { on_show: self.on_show, drawn, pose: self.pose, is_fixed: self.preview.is_some() }
     }
 
@@ -145,7 +149,7 @@ impl Frame<'_> {
 impl Viewport {
     /// Draws the view and turns what the pointer does into wishes.
     pub(super) fn ui(&mut self, ui: &mut Ui, sources: Sources<'_>, state: &mut UiState, out: &mut Outbox) {
-        let Sources { session, mesh, on_show, preview, places_mm, .. } = sources;
+        let Sources { session, mesh, on_show, preview, places_mm, draft, .. } = sources;
         let solve = sources.solve.filter(|_| mesh.is_none());
         // The cage is neither seen nor grabbed while the mesh is shown.
         let pose = sources.pose.filter(|_| mesh.is_none());
@@ -158,7 +162,8 @@ impl Viewport {
         };
         state.selection.retain(|&v| pose.is_none_or(|p| (v as usize) < p.cage.n_handles()));
         let gizmo = gizmo(&handles, state, Tokens::here(ui), self.hot);
-        let frame = Frame { session, pose, mesh, solve, on_show, preview, places_mm, handles: &handles, gizmo, rect };
+        let frame =
+            Frame { session, pose, mesh, solve, on_show, preview, places_mm, draft, handles: &handles, gizmo, rect };
         if std::mem::take(&mut state.fit) {
             self.fit(ui, &frame, state);
         }
@@ -418,6 +423,7 @@ impl Viewport {
         } else if let Some((run, _)) = frame.solve.and_then(|solve| pattern_scene::pattern(solve, &state.solve)) {
             overlay::note(ui, frame.rect, format!("Pattern of {}", run.name), tokens.weak);
         }
+        frame.draft.into_iter().for_each(|draft| draft.draw(ui, frame.rect, &view));
         if frame.mesh.is_none() && frame.preview.is_none() {
             let places = frame.places_mm.iter().map(|p| DVec3::from_array(*p).as_vec3());
             overlay::places(ui, frame.rect, &view, places);
