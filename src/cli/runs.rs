@@ -83,7 +83,7 @@ pub(super) fn solve(
         }
         solved => solved?,
     };
-    let stored = Stored::new(job, &solved.sweep, solved.fitted, RunFigures::of(&solved));
+    let stored = Stored::new(job, &solved.sweep, solved.fitted, RunFigures::of(&solved), &solved.far_fields);
     stored.save(dir)?;
     if path.exists() {
         std::fs::remove_file(&path).with_context(|| format!("removing {}", path.display()))?;

@@ -43,7 +43,7 @@ pub(super) fn pattern<'a>(solve: &'a SolveSession, chosen: &SolveUi) -> Option<(
 
 /// Ends of the scale of colours, dBi.
 pub(super) fn range(pattern: &Pattern, range_db: f64) -> [f32; 2] {
-    let rim = pattern.max.0;
+    let rim = pattern.max().0;
     [(rim - range_db) as f32, rim as f32]
 }
 

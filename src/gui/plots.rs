@@ -78,7 +78,7 @@ impl App {
                 let freq = polar::frequency(&self.solve, &self.state.solve)?;
                 let found = runs.iter().filter_map(|run| Some((*run, polar::pattern(run, freq)?)));
                 let cuts: Vec<Cuts<'_>> =
-                    found.map(|(run, p)| (run.name.as_str(), on_paper(run.color), &p.cuts)).collect();
+                    found.map(|(run, p)| (run.name.as_str(), on_paper(run.color), p.cuts())).collect();
                 let chosen = &self.state.solve;
                 let title = format!("Directivity at {}, {name}", polar::freq_text(freq));
                 let in_parts = chosen.polarization == Polarization::Parts;

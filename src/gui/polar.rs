@@ -89,14 +89,14 @@ pub(super) fn ui(ui: &mut Ui, solve: &SolveSession, plane: usize, chosen: &Solve
         painter.text(area.center(), Align2::CENTER_CENTER, text, FontId::proportional(13.0), tokens.weak);
         return;
     }
-    let greatest = found.iter().map(|(_, p)| p.max.0).fold(f64::NEG_INFINITY, f64::max);
+    let greatest = found.iter().map(|(_, p)| p.max().0).fold(f64::NEG_INFINITY, f64::max);
     let square = square(area);
     let radius = (square.width() / 2.0 - MARGIN).max(10.0);
     let dial = Dial { center: square.center(), radius, rim: rim(greatest), range: chosen.range_db };
     grid(&painter, dial, tokens);
     painter.text(area.min, Align2::LEFT_TOP, name, FontId::proportional(12.0), tokens.text);
     for (run, pattern) in &found {
-        curves(&painter, dial, &pattern.cuts[plane], tokens.series[run.color], chosen.polarization);
+        curves(&painter, dial, &pattern.cuts()[plane], tokens.series[run.color], chosen.polarization);
     }
     read_out(&painter, dial, &found, plane, response, tokens);
 }
@@ -163,7 +163,7 @@ fn read_out(
     response.on_hover_ui_at_pointer(|ui| {
         ui.label(format!("{degree:.0}° from broadside"));
         for (run, pattern) in found {
-            let cut = &pattern.cuts[plane];
+            let cut = &pattern.cuts()[plane];
             let Some(total) = cut.total.get(index) else { continue };
             ui.label(RichText::new(&run.name).color(tokens.series[run.color]).strong());
             ui.label(format!("{total:.2} dBi   co {:.1}   cross {:.1} dBi", cut.co[index], cut.cross[index]));

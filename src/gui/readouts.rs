@@ -77,11 +77,11 @@ const REFLECTION: &[Line<RunResult>] = &[
 ];
 
 const PATTERN: &[Line<Pattern>] = &[
-    Line { name: "Directivity", tip: "Greatest of all directions", text: |p| Some(format!("{:.2} dBi", p.max.0)) },
+    Line { name: "Directivity", tip: "Greatest of all directions", text: |p| Some(format!("{:.2} dBi", p.max().0)) },
     Line {
         name: "  towards θ, φ",
         tip: "Direction of the greatest directivity: θ from +z, φ from +x",
-        text: |p| Some(p.max.1.map(|a| format!("{:.0}°", a.to_degrees().round() % 360.0)).join(", ")),
+        text: |p| Some(p.max().1.map(|a| format!("{:.0}°", a.to_degrees().round() % 360.0)).join(", ")),
     },
     Line {
         name: "Towards +z",
@@ -91,17 +91,17 @@ const PATTERN: &[Line<Pattern>] = &[
     Line {
         name: "Gain",
         tip: "Greatest directivity less the losses",
-        text: |p| Some(format!("{:.2} dBi", p.max.0 + 10.0 * p.field.efficiency().log10())),
+        text: |p| Some(format!("{:.2} dBi", p.max().0 + 10.0 * p.field.efficiency().log10())),
     },
     Line {
         name: "Width in E plane",
         tip: "Between the half-power directions",
-        text: |p| degrees(p.cuts[0].half_power_width()),
+        text: |p| degrees(p.cuts()[0].half_power_width()),
     },
     Line {
         name: "Width in H plane",
         tip: "Between the half-power directions",
-        text: |p| degrees(p.cuts[1].half_power_width()),
+        text: |p| degrees(p.cuts()[1].half_power_width()),
     },
     Line {
         name: "Front to back",

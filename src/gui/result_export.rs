@@ -68,7 +68,7 @@ fn write_cuts(result: &RunResult, path: &Path) -> anyhow::Result<()> {
     let header =
         ["freq_ghz", "psi_deg", "e_total_dbi", "e_co_dbi", "e_cross_dbi", "h_total_dbi", "h_co_dbi", "h_cross_dbi"];
     let rows = result.patterns.iter().flat_map(|pattern| {
-        let [e, h] = &pattern.cuts;
+        let [e, h] = pattern.cuts();
         let freq = pattern.field.freq / GHZ;
         (0..e.psi.len()).map(move |k| {
             let psi = e.psi[k].to_degrees();

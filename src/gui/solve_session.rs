@@ -203,12 +203,13 @@ impl SolveSession {
         self.runs.push(FinishedRun { serial: self.serial, job, result, name, color, is_shown: true });
     }
 
-    /// Keeps the results beside a project file, but for those that are kept there already.
+    /// Keeps the results beside a project file, but for those that are kept there as they are.
     pub(super) fn keep(&self, project_file: &Path) -> Result<(), IoError> {
         let dir = results_dir(project_file);
         for run in &self.runs {
-            if !matches!(Stored::find(&run.job, &dir), Ok(Some(_))) {
-                run.result.stored(run.job.clone()).save(&dir)?;
+            let ours = run.result.stored(run.job.clone());
+            if !matches!(Stored::find(&run.job, &dir), Ok(Some(kept)) if kept == ours) {
+                ours.save(&dir)?;
             }
         }
         Ok(())

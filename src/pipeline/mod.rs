@@ -16,6 +16,7 @@ mod error;
 mod estimate;
 mod fields;
 pub mod job;
+mod kept_fields;
 pub mod live;
 mod loads;
 mod looks;

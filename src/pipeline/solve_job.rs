@@ -9,8 +9,7 @@ use crate::project::Project;
 use crate::results::{Cut, CutPlane, FarField, FittedResonance, Resonance, Sweep};
 use crate::task::Task;
 use crate::tlm::Checkpoint;
-use rayon::prelude::*;
-use std::sync::{Arc, Mutex, MutexGuard};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock};
 use std::time::{Duration, Instant};
 
 /// What is to be solved.
@@ -79,15 +78,15 @@ pub struct RunResult {
     pub fitted: Option<FittedResonance>,
     /// Figures of the run.
     pub figures: RunFigures,
-    /// Far fields, by ascending frequency; none of a result that was kept in a file.
+    /// Far fields, by ascending frequency; of a result that was kept in a file those that it held.
     pub patterns: Vec<Pattern>,
 }
 
 impl RunResult {
-    /// As it is kept in a file: without its far fields.
+    /// As it is kept in a file.
     #[must_use]
     pub fn stored(&self, job: stored::Job) -> Stored {
-        Stored::new(job, &self.sweep, self.fitted, self.figures)
+        Stored::new(job, &self.sweep, self.fitted, self.figures, self.patterns.iter().map(|p| &p.field))
     }
 }
 
@@ -98,7 +97,7 @@ impl From<Solved> for RunResult {
             fitted: solved.fitted,
             figures: RunFigures::of(&solved),
             sweep: solved.sweep,
-            patterns: solved.far_fields.into_par_iter().map(Pattern::from).collect(),
+            patterns: solved.far_fields.into_iter().map(Pattern::from).collect(),
         }
     }
 }
@@ -111,25 +110,37 @@ impl From<&Stored> for RunResult {
             fitted: stored.fitted,
             figures: stored.figures,
             sweep,
-            patterns: Vec::new(),
+            patterns: stored.fields.iter().cloned().map(Pattern::from).collect(),
         }
     }
 }
 
-/// A far field with what a picture of it needs.
+/// A far field with what a picture of it needs, found when it is asked for first: some milliseconds each.
 #[derive(Clone, Debug)]
 pub struct Pattern {
     /// The field.
     pub field: FarField,
+    cuts: OnceLock<[Cut; 2]>,
+    max: OnceLock<(f64, [f64; 2])>,
+}
+
+impl Pattern {
     /// Directivity around the E and the H plane.
-    pub cuts: [Cut; 2],
+    #[must_use]
+    pub fn cuts(&self) -> &[Cut; 2] {
+        self.cuts.get_or_init(|| [CutPlane::E, CutPlane::H].map(|plane| self.field.cut(plane)))
+    }
+
     /// Greatest directivity, dBi, with its theta and phi.
-    pub max: (f64, [f64; 2]),
+    #[must_use]
+    pub fn max(&self) -> (f64, [f64; 2]) {
+        *self.max.get_or_init(|| self.field.max_directivity())
+    }
 }
 
 impl From<FarField> for Pattern {
     fn from(field: FarField) -> Self {
-        Self { cuts: [CutPlane::E, CutPlane::H].map(|plane| field.cut(plane)), max: field.max_directivity(), field }
+        Self { field, cuts: OnceLock::new(), max: OnceLock::new() }
     }
 }
 

@@ -5,11 +5,12 @@
 //! solver. Presets that are switched off, and settings that the shape or the compensation does not use, leave it as it
 //! is; so the flat antenna's result serves every bend of it.
 
+use super::kept_fields;
 use super::mesh::Shape;
 use super::solve::{SolveSettings, Solved};
 use crate::io::{IoError, document};
 use crate::project::{AntennaSpec, CageSpec, CompensationMode, MetalSpec, PresetSpec, Project, RuleSpec, Settings};
-use crate::results::{FittedResonance, Sweep};
+use crate::results::{FarField, FittedResonance, Sweep};
 use crate::tlm::SOLVER_VERSION;
 use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
@@ -18,8 +19,8 @@ use std::path::{Path, PathBuf};
 
 /// The tag of a result's file.
 const FORMAT: &str = "conformant-result";
-/// The newest version that is read, and the one that is written.
-const VERSION: u32 = 1;
+/// The newest version that is read, and the one that is written. Version 1 has no far fields.
+const VERSION: u32 = 2;
 
 /// What is solved: a project's shape and how.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -145,6 +146,9 @@ pub struct Stored {
     pub fitted: Option<FittedResonance>,
     /// Figures of the run.
     pub figures: RunFigures,
+    /// Far fields, by ascending frequency: those nearest to the resonance where all would be too much.
+    #[serde(default, with = "kept_fields", skip_serializing_if = "Vec::is_empty")]
+    pub fields: Vec<FarField>,
 }
 
 /// Figures of a run.
@@ -190,9 +194,17 @@ impl RunFigures {
 }
 
 impl Stored {
-    /// A result to be kept.
+    /// A result to be kept, with as many of its far fields as a file may hold.
     #[must_use]
-    pub fn new(job: Job, sweep: &Sweep, fitted: Option<FittedResonance>, figures: RunFigures) -> Self {
+    pub fn new<'a>(
+        job: Job,
+        sweep: &Sweep,
+        fitted: Option<FittedResonance>,
+        figures: RunFigures,
+        fields: impl IntoIterator<Item = &'a FarField>,
+    ) -> Self {
+        let [lo, hi] = job.settings.band;
+        let fields = kept_fields::nearest(fields, sweep.resonance().map_or((lo + hi) / 2.0, |r| r.freq));
         let Sweep { freqs, s11, reference } = sweep;
         Self {
             job,
@@ -202,6 +214,7 @@ impl Stored {
             reference_ohm: *reference,
             fitted,
             figures,
+            fields,
         }
     }
 
@@ -260,6 +273,8 @@ impl Stored {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::pipeline::made_up::made_up;
+    use crate::pipeline::solve_job::RunResult;
     use crate::pipeline::{Density, MeshSettings, StopRule};
     use crate::project::materials::{DIELECTRICS, METALS};
     use crate::project::{BendPlane, PresetEntry, ResistorSpec};
@@ -334,7 +349,43 @@ mod tests {
                 tet_steps_per_second: 5e7,
                 seconds: 9.5,
             },
+            fields: Vec::new(),
         }
+    }
+
+    #[test]
+    fn far_fields_come_back_to_the_bit_and_the_nearest_are_kept() {
+        let folder = tempfile::tempdir().unwrap();
+        let job = Job::new(&bent(), Shape::Flat, &settings());
+        let result = made_up(10.6e9);
+        let kept = result.stored(job.clone());
+        let path = kept.save(folder.path()).unwrap();
+        let found = Stored::find(&job, folder.path()).unwrap().expect("kept");
+        let bits = |fields: &[FarField]| -> Vec<u64> {
+            let samples = fields.iter().flat_map(|f| f.e_theta.iter().chain(&f.e_phi));
+            samples.flat_map(|e| [e.re.to_bits(), e.im.to_bits()]).collect()
+        };
+        assert_eq!(found, kept, "as kept");
+        assert_eq!(bits(&found.fields), bits(&[result.patterns[0].field.clone()]), "to the bit");
+        assert_eq!(RunResult::from(&found).patterns[0].cuts(), result.patterns[0].cuts(), "with its cuts");
+        let text = std::fs::read_to_string(&path).unwrap();
+        let begin = text.find(",\"fields\":").expect("they are in the file");
+        let first = format!("{}}}}}\n", &text[..begin]).replace("\"version\":2", "\"version\":1");
+        std::fs::write(&path, first).unwrap();
+        let old = Stored::find(&job, folder.path()).unwrap().expect("of version 1");
+        assert_eq!(old, Stored { fields: Vec::new(), ..kept.clone() }, "but for its fields");
+        std::fs::write(&path, text.replacen("\"samples\":\"AAAA", "\"samples\":\"", 1)).unwrap();
+        let message = Stored::find(&job, folder.path()).unwrap_err().to_string();
+        assert!(message.contains("far field"), "{message}");
+        let many: Vec<FarField> = (0..100_u32)
+            .map(|k| FarField { freq: 9e9 + 4e7 * f64::from(k), ..result.patterns[0].field.clone() })
+            .collect();
+        let kept = Stored::new(job, &result.sweep, None, result.figures, &many);
+        let [first, .., last] = &kept.fields[..] else { panic!("many") };
+        assert!(kept.fields.len() < 50 && first.freq < 10.6e9 && last.freq > 10.6e9, "around the resonance");
+        assert!(kept.fields.is_sorted_by(|a, b| a.freq < b.freq), "ascending");
+        let size = std::fs::metadata(kept.save(folder.path()).unwrap()).unwrap().len();
+        assert!((1_500_000..2_200_000).contains(&size), "{size} bytes");
     }
 
     #[test]

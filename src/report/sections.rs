@@ -338,11 +338,11 @@ type PatternLine = (&'static str, fn(&Pattern) -> Option<String>);
 
 const PATTERN: [PatternLine; 9] = [
     ("Frequency", |p| Some(ghz(p.field.freq))),
-    ("Directivity", |p| Some(format!("{:.2} dBi", p.max.0))),
-    ("  towards \u{3b8}, \u{3c6}", |p| Some(p.max.1.map(|a| format!("{:.0}\u{b0}", a.to_degrees())).join(", "))),
-    ("Gain", |p| Some(format!("{:.2} dBi", p.max.0 + 10.0 * p.field.efficiency().log10()))),
-    ("Half-power width, E plane", |p| p.cuts[0].half_power_width().map(|a| format!("{:.1}\u{b0}", a.to_degrees()))),
-    ("Half-power width, H plane", |p| p.cuts[1].half_power_width().map(|a| format!("{:.1}\u{b0}", a.to_degrees()))),
+    ("Directivity", |p| Some(format!("{:.2} dBi", p.max().0))),
+    ("  towards \u{3b8}, \u{3c6}", |p| Some(p.max().1.map(|a| format!("{:.0}\u{b0}", a.to_degrees())).join(", "))),
+    ("Gain", |p| Some(format!("{:.2} dBi", p.max().0 + 10.0 * p.field.efficiency().log10()))),
+    ("Half-power width, E plane", |p| p.cuts()[0].half_power_width().map(|a| format!("{:.1}\u{b0}", a.to_degrees()))),
+    ("Half-power width, H plane", |p| p.cuts()[1].half_power_width().map(|a| format!("{:.1}\u{b0}", a.to_degrees()))),
     ("Front to back", |p| Some(format!("{:.1} dB", p.field.front_to_back()))),
     ("Efficiency", |p| Some(format!("{:.1} %", 100.0 * p.field.efficiency()))),
     ("Power balance", |p| p.field.balance().map(|b| format!("{:.1} %", 100.0 * b))),
@@ -379,7 +379,7 @@ pub(super) fn patterns(page: &mut Page, contents: &Contents<'_>) -> Result<(), P
     };
     page.table(&head, &PATTERN.iter().map(row).collect::<Vec<_>>());
     let cuts: Vec<charts::Cuts<'_>> =
-        found.iter().zip(&names).map(|((k, _, p), name)| (name.as_str(), color(*k), &p.cuts)).collect();
+        found.iter().zip(&names).map(|((k, _, p), name)| (name.as_str(), color(*k), p.cuts())).collect();
     let freqs: Vec<f64> = found.iter().map(|(_, _, p)| p.field.freq).collect();
     let same = freqs.iter().all(|f| (f - freqs[0]).abs() < SAME);
     let caption =

@@ -12,10 +12,12 @@
 use super::sphere::Grid;
 use crate::units::ETA0;
 use nalgebra::Complex;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Mean powers at one frequency, W.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Powers {
     /// Carried to the port by the incident wave.
     pub incident: f64,
@@ -73,6 +75,9 @@ pub struct Cut {
 /// Decibels below which nothing is told apart from nothing.
 pub const FLOOR_DB: f64 = -120.0;
 
+/// Most intervals from pole to pole of a field that is read: ten times those of any antenna that can be solved.
+const MAX_INTERVALS: usize = 4096;
+
 /// Decibels of a ratio of powers, at least [`FLOOR_DB`].
 fn decibels(ratio: f64) -> f64 {
     10.0 * ratio.max(1e-12).log10()
@@ -88,6 +93,24 @@ impl FarField {
         let density = e_theta.iter().zip(&e_phi).map(|(a, b)| (a.norm_sqr() + b.norm_sqr()) / (2.0 * ETA0));
         let powers = Powers { radiated: grid.integral(density), ..powers };
         Self { freq, theta: grid.theta(), phi: grid.phi(), e_theta, e_phi, powers }
+    }
+
+    /// A far field that was kept; `None` if the numbers are none.
+    ///
+    /// * `n`: even; theta in n steps from 0 to π, phi in 2n steps.
+    /// * `e`: the components along theta and phi, V, `[n_theta x n_phi]` each, rows by theta.
+    #[must_use]
+    pub fn from_samples(freq: f64, n: usize, e: [Vec<Complex<f64>>; 2], powers: Powers) -> Option<Self> {
+        let has_grid = (2..=MAX_INTERVALS).contains(&n) && n.is_multiple_of(2);
+        let is_whole = |e: &Vec<Complex<f64>>| {
+            e.len() == 2 * n * (n + 1) && e.iter().all(|e| e.re.is_finite() && e.im.is_finite())
+        };
+        let is_field = has_grid && freq > 0.0 && freq.is_finite() && e.iter().all(is_whole);
+        let [e_theta, e_phi] = e;
+        is_field.then(|| {
+            let grid = Grid::new(n);
+            Self { freq, theta: grid.theta(), phi: grid.phi(), e_theta, e_phi, powers }
+        })
     }
 
     /// The field of a source larger by a factor; what the port takes is left as it is.
