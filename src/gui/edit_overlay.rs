@@ -96,6 +96,18 @@ pub(super) fn part_text(part: GizmoPart) -> String {
     }
 }
 
+/// Gives each vertex a name for screen readers and tests; the view itself handles the pointer.
+///
+/// * `handles`: in picture units.
+pub(super) fn name_vertices(ui: &Ui, response: &Response, view: &View, handles: &[Vec3], state: &UiState) {
+    for (i, &handle) in handles.iter().enumerate() {
+        let Some(at) = seen(view, response.rect, handle).filter(|at| response.rect.contains(*at)) else { continue };
+        let named = ui.interact(Rect::from_center_size(at, vec2(12.0, 12.0)), response.id.with(i), Sense::hover());
+        let selected = u32::try_from(i).is_ok_and(|v| state.selection.contains(&v));
+        named.widget_info(|| WidgetInfo::selected(Role::GraphicsSymbol, true, selected, format!("Cage vertex {i}")));
+    }
+}
+
 /// Gives each part of the gizmo a name for screen readers and tests; the view itself handles the pointer.
 pub(super) fn name_gizmo(ui: &Ui, response: &Response, view: &View, gizmo: &Gizmo) {
     let of_axis = |axis| [GizmoPart::Arrow(axis), GizmoPart::Ring(axis), GizmoPart::Knob(axis)];

@@ -31,6 +31,7 @@ mod edit_commands;
 mod edit_overlay;
 mod edit_ui;
 mod export_dialog;
+mod feed_pick;
 mod field;
 mod file_field;
 mod files;

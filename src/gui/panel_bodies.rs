@@ -77,17 +77,13 @@ fn feed(ui: &mut Ui, spec: &BodiesSpec, typed: &mut FeedUi, out: &mut Outbox) {
         }
         ui.end_row();
     });
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         if ui.button("Place feed").on_hover_text("A lumped source in series with its resistance").clicked() {
-            let [[x, y, _], _] = typed.ends_mm;
-            let fed = match typed.is_upright {
-                true => spec.with_upright_feed([x, y], typed.ohm),
-                false => spec.with_feed(typed.ends_mm, typed.ohm),
-            };
-            typed.error = fed.as_ref().err().map(ToString::to_string);
-            if let Ok(fed) = fed {
-                out.edit("feed", Edit::SetBodies(Some(Box::new(fed))));
-            }
+            place_feed(spec, typed, out);
+        }
+        let tip = "Click the antenna where the feed goes; Esc gives up";
+        if ui.selectable_label(typed.picks.is_some(), "Pick in the view").on_hover_text(tip).clicked() {
+            typed.picks = if typed.picks.is_some() { None } else { Some(0) };
         }
         if spec.feed.is_some() && ui.button("Remove feed").on_hover_text("Leave the bodies without one").clicked() {
             out.edit("feed", Edit::SetBodies(Some(Box::new(BodiesSpec { feed: None, ..spec.clone() }))));
@@ -95,5 +91,18 @@ fn feed(ui: &mut Ui, spec: &BodiesSpec, typed: &mut FeedUi, out: &mut Outbox) {
     });
     if let Some(error) = &typed.error {
         ui.add(egui::Label::new(RichText::new(error).color(Tokens::here(ui).error).small()).wrap());
+    }
+}
+
+/// Places the feed as typed, or says why not.
+pub(super) fn place_feed(spec: &BodiesSpec, typed: &mut FeedUi, out: &mut Outbox) {
+    let [[x, y, _], _] = typed.ends_mm;
+    let fed = match typed.is_upright {
+        true => spec.with_upright_feed([x, y], typed.ohm),
+        false => spec.with_feed(typed.ends_mm, typed.ohm),
+    };
+    typed.error = fed.as_ref().err().map(ToString::to_string);
+    if let Ok(fed) = fed {
+        out.edit("feed", Edit::SetBodies(Some(Box::new(fed))));
     }
 }

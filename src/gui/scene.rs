@@ -20,7 +20,7 @@ use egui::Color32;
 use std::sync::Arc;
 
 /// Folds sharper than this are drawn as outlines, degrees: more than a bent facet turns, less than a pin's polygon.
-const CREASE_DEG: f32 = 20.0;
+pub(super) const CREASE_DEG: f32 = 20.0;
 /// How much of the exact cylinder is seen where it is drawn through the antenna.
 const GHOST_OPACITY: f32 = 0.28;
 /// Makes scenes and keeps what can be used again.

@@ -3,11 +3,18 @@
 use super::command::Command;
 use super::dialogs::Dialog;
 use super::outbox::Action;
-use super::tests::{Window, lay_out, project, settle, window};
+use super::tests::{Window, button, lay_out, move_to, project, settle, window};
 use super::ui_state::Tab;
+use crate::antenna::bodies::tests::cuboid;
+use crate::geometry::DVec3;
 use crate::io::{ExportOptions, export};
 use crate::pipeline::{Density, flat};
-use crate::project::{BodyKind, Project};
+use crate::project::{
+    BendPlane, BodiesSpec, BodyKind, BodySpec, Edit, LooseBody, PresetEntry, PresetSpec, Project, RuleSpec, WELD_MM,
+};
+use crate::render::{StandardView, Vec2, Vec3, View};
+use crate::task::Task;
+use egui::Modifiers;
 use egui_kittest::kittest::Queryable;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -85,12 +92,86 @@ fn bodies_are_imported_shown_and_taken_back_by_one_undo() {
     }
     let mesh = &window.state().mesh.shown().expect("a mesh").ready.meshed;
     assert_eq!((mesh.mesh.check(), mesh.posts.len()), (Ok(()), 1), "with the feed's line");
-    window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
+    window.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
     settle(&mut window);
     assert_eq!(project(&window), after, "the feed is one step, undone to the bit");
-    window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
+    window.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
     settle(&mut window);
     assert_eq!(project(&window), before, "one step back");
+}
+
+fn block(name: &str, lo: [f64; 3], hi: [f64; 3]) -> LooseBody {
+    LooseBody {
+        spec: BodySpec { name: name.to_owned(), kind: BodyKind::Metal },
+        surface: cuboid(name, lo, hi, [4, 4, 1]).surface,
+    }
+}
+
+/// Seen from above, so that all of it fits.
+fn from_above(window: &mut Window) {
+    window.state_mut().carry_out(&egui::Context::default(), Action::Run(Command::LookFrom(StandardView::Top)));
+    window.state_mut().carry_out(&egui::Context::default(), Action::Run(Command::Fit));
+    settle(window);
+}
+
+fn click(window: &mut Window, at: egui::Pos2) {
+    move_to(window, at);
+    button(window, at, true, Modifiers::NONE);
+    button(window, at, false, Modifiers::NONE);
+}
+
+#[test]
+fn clicks_near_the_edges_of_two_arms_place_the_feed_across_their_gap() {
+    let mut window = window();
+    window.state_mut().state.tab = Tab::Antenna;
+    let arms = [block("left", [-8.0, -2.0, 0.0], [-1.0, 2.0, 0.5]), block("right", [1.0, -2.0, 0.0], [8.0, 2.0, 0.5])];
+    let bodies = BodiesSpec::weld(&arms, WELD_MM, &Task::default()).expect("apart");
+    window.state_mut().edit("bodies", Edit::SetBodies(Some(Box::new(bodies))));
+    window.state_mut().state.feed.is_upright = false;
+    from_above(&mut window);
+    window.get_by_label("Pick in the view").click();
+    lay_out(&mut window);
+    for side in [-1.0, 1.0] {
+        let rect = window.get_by_label("3-D view").rect();
+        let size = Vec2::new(rect.width(), rect.height());
+        let view = View { camera: window.state().state.camera, size, scale: 1.0 };
+        let seen = view.project(Vec3::new(side, 0.3, 0.5)).expect("before the eye").at;
+        click(&mut window, rect.min + egui::vec2(seen.x + 4.0 * side, seen.y));
+    }
+    settle(&mut window);
+    let feed = project(&window).bodies.expect("bodies").feed.expect("placed");
+    for (end, x) in [(feed.from_mm, -1.0), (feed.to_mm, 1.0)] {
+        let far = DVec3::from_array(end).distance(DVec3::new(x, 0.3, 0.5));
+        assert!(far < 0.05, "on the edge of the arm: {end:?}");
+    }
+}
+
+#[test]
+fn a_click_on_the_bent_antenna_places_the_feed_on_the_flat_one() {
+    let mut window = window();
+    window.state_mut().state.tab = Tab::Antenna;
+    let plates =
+        [block("low", [-8.0, -8.0, -2.0], [8.0, 8.0, -1.5]), block("high", [-8.0, -8.0, 0.0], [8.0, 8.0, 0.5])];
+    let bodies = BodiesSpec::weld(&plates, WELD_MM, &Task::default()).expect("apart");
+    let bend = PresetSpec::Bend { plane: BendPlane::H, radius_mm: 20.0, rule: RuleSpec::Tangent, kept_plane_mm: 0.0 };
+    window.state_mut().edit("bodies", Edit::SetBodies(Some(Box::new(bodies))));
+    window.state_mut().edit("presets", Edit::SetPresets(vec![PresetEntry { enabled: true, preset: bend }]));
+    from_above(&mut window);
+    window.get_by_label("Pick in the view").click();
+    lay_out(&mut window);
+    let view = window.get_by_label("3-D view").rect();
+    // Beside the middle, where no cage vertex is.
+    let at = view.center() + egui::vec2(0.11, 0.07) * view.height();
+    click(&mut window, at);
+    settle(&mut window);
+    assert_eq!(window.state().state.feed.picks, None, "done");
+    let feed = project(&window).bodies.expect("bodies").feed.expect("placed");
+    let ([x, y, z], top) = (feed.from_mm, feed.to_mm[2]);
+    assert!((z + 1.5).abs() < 1e-6 && top.abs() < 1e-6, "across the gap: {feed:?}");
+    assert!((0.5..6.0).contains(&x) && (-5.0..-0.3).contains(&y), "right of the middle and below it: {feed:?}");
+    // Seen where it was clicked, although the antenna is bent.
+    let mark = window.get_by_label("Feed: 50 Ω across the gap").rect().center();
+    assert!(mark.distance(at) < 12.0, "{mark:?} for {at:?}");
 }
 
 #[test]

@@ -121,11 +121,13 @@ pub(super) struct FeedUi {
     pub(super) ends_mm: [[f64; 3]; 2],
     pub(super) ohm: f64,
     pub(super) error: Option<String>,
+    /// The end that the next click in the view places.
+    pub(super) picks: Option<usize>,
 }
 
 impl Default for FeedUi {
     fn default() -> Self {
-        Self { is_upright: true, ends_mm: [[0.0; 3]; 2], ohm: 50.0, error: None }
+        Self { is_upright: true, ends_mm: [[0.0; 3]; 2], ohm: 50.0, error: None, picks: None }
     }
 }
 

@@ -9,6 +9,7 @@ use super::compare_session::mode_text;
 use super::draft::Draft;
 use super::edit_overlay;
 use super::edit_ui::Outline;
+use super::feed_pick;
 use super::heat::{Bar, Heated, OnShow, ticks};
 use super::mark_overlay;
 use super::mesh_scene::MeshScene;
@@ -175,9 +176,13 @@ impl Viewport {
         self.start_wanted(ui, &response, &frame, state, out);
         self.start(ui, &response, &frame, state, out);
         self.go_on(ui, &response, &frame, state, out);
-        self.click(ui, &response, &frame, state);
+        self.click(ui, &response, &frame, state, out);
         self.zoom(ui, &response, &frame, state);
         let scene = self.draw(ui, &frame, state);
+        if session.project().bodies.is_none() || mesh.is_some() {
+            state.feed.picks = None;
+        }
+        feed_pick::hint(ui, rect, &mut state.feed);
         self.overlay(ui, &response, &frame, state, &scene);
     }
 
@@ -243,7 +248,7 @@ impl Viewport {
         }
         if self.hot.gizmo.is_some() || self.hot.vertex.is_some() {
             ui.ctx().set_cursor_icon(CursorIcon::Grab);
-        } else if state.editing.outline.is_some() {
+        } else if state.editing.outline.is_some() || state.feed.picks.is_some() {
             ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
         }
     }
@@ -340,11 +345,21 @@ impl Viewport {
         }
     }
 
-    fn click(&self, ui: &Ui, response: &Response, frame: &Frame<'_>, state: &mut UiState) {
+    fn click(&mut self, ui: &Ui, response: &Response, frame: &Frame<'_>, state: &mut UiState, out: &mut Outbox) {
         let at = response.interact_pointer_pos().filter(|_| response.clicked() && !self.is_dragging());
         let Some(at) = at else { return };
         response.request_focus();
         let (view, at, shift) = (frame.view(ui, state), frame.local(at), ui.input(|i| i.modifiers.shift));
+        if state.feed.picks.is_some() {
+            let scene = self.scene(ui, frame, state);
+            let bodies = frame.session.project().bodies.as_ref().filter(|_| frame.mesh.is_none());
+            let of_bodies = bodies.zip(frame.on_show).zip(scene.surfaces.first());
+            if let Some(((spec, shown), surface)) = of_bodies {
+                let flat = &shown.deformed.flat;
+                feed_pick::click((&view, at), surface, flat, spec, &mut state.feed, out);
+            }
+            return;
+        }
         let on_gizmo = frame.gizmo_at(&view, at).is_some_and(|(_, part)| part != GizmoPart::Center);
         match handle_at(&view, frame.handles, at, GRAB_RADIUS).and_then(|v| u32::try_from(v).ok()) {
             Some(vertex) if shift && state.selection.remove(&vertex) => {}
@@ -407,7 +422,7 @@ impl Viewport {
 
     fn overlay(&mut self, ui: &Ui, response: &Response, frame: &Frame<'_>, state: &UiState, scene: &Scene) {
         let view = frame.view(ui, state);
-        name_vertices(ui, response, frame, state, &view);
+        edit_overlay::name_vertices(ui, response, &view, frame.handles, state);
         if let Some(gizmo) = &frame.gizmo {
             edit_overlay::name_gizmo(ui, response, &view, gizmo);
         }
@@ -445,6 +460,7 @@ impl Viewport {
                 }
             }
             Drag::Operate(operating) => edit_overlay::operator(ui, frame.rect, &view, operating, &state.editing),
+            Drag::Nothing if state.feed.picks.is_some() => {}
             Drag::Nothing if state.editing.outline.is_some() => {
                 if let Some(outline) = state.editing.outline {
                     edit_overlay::outline_hint(ui, frame.rect, outline);
@@ -480,19 +496,4 @@ fn hold_input(ui: &Ui, response: &Response) {
     let screen = ui.ctx().content_rect();
     let cover = Area::new(Id::unique("operator")).order(Order::Foreground).fixed_pos(screen.min);
     cover.show(ui.ctx(), |ui| ui.allocate_rect(screen, Sense::click_and_drag()));
-}
-
-/// Gives each vertex a name for screen readers and tests; the view itself handles the pointer.
-fn name_vertices(ui: &Ui, response: &Response, frame: &Frame<'_>, state: &UiState, view: &View) {
-    for (i, &handle) in frame.handles.iter().enumerate() {
-        let Some(seen) = view.project(handle) else { continue };
-        let at = frame.rect.min + egui::vec2(seen.at.x, seen.at.y);
-        if !frame.rect.contains(at) {
-            continue;
-        }
-        let place = Rect::from_center_size(at, egui::vec2(12.0, 12.0));
-        let named = ui.interact(place, response.id.with(i), Sense::hover());
-        let selected = u32::try_from(i).is_ok_and(|v| state.selection.contains(&v));
-        named.widget_info(|| WidgetInfo::selected(Role::GraphicsSymbol, true, selected, format!("Cage vertex {i}")));
-    }
 }
