@@ -192,7 +192,7 @@ fn what_is_open_is_said_with_the_place_and_cannot_be_accepted() {
     window.get_by_label("2.5, 0.0, 0.0 mm").click();
     lay_out(&mut window);
     let target = window.state().state.camera.target;
-    assert!(target.distance(crate::render::Vec3::new(2.5, 0.0, 0.0)) < 1e-4, "looked at: {target}");
+    assert!(target.distance(Vec3::new(2.5, 0.0, 0.0)) < 1e-4, "looked at: {target}");
     window.get_by_label("Cancel").click();
     settle(&mut window);
     assert_eq!(project(&window), before, "nothing happened");
