@@ -5,7 +5,8 @@
 //! ```
 //!
 //! The antenna itself is meshed flat, as layers of split prisms, and carried through the deformation like its surfaces:
-//! [`mod@block`]. The air around it, or any other non-manifold complex of many regions, goes through [`fill()`]:
+//! [`mod@block`]. The air around it, or any other non-manifold complex of many regions, goes through [`fill()`]
+//! (flat parts of an imported one are first triangulated anew, both sides of a plate alike: [`remesh()`]):
 //!
 //! 1. points inside, at the corners and centers of an octree that follows the sizing field;
 //! 2. the Delaunay mesh of all points, by insertion along a space-filling curve with exact predicates;

@@ -75,8 +75,11 @@ impl Group {
             variants.push(variant("cylinder", "exact cylinder", Shape::Cylinder, None));
         }
         variants.push(variant("raw", "uncompensated", Shape::Deformed, None));
-        variants.push(variant("wl", "WL", Shape::Deformed, Wl));
-        variants.push(variant("isometric", "isometric", Shape::Deformed, Isometric));
+        // Imported bodies are not compensated.
+        if project.bodies.is_none() {
+            variants.push(variant("wl", "WL", Shape::Deformed, Wl));
+            variants.push(variant("isometric", "isometric", Shape::Deformed, Isometric));
+        }
         Self { name, title, variants }
     }
 }
@@ -91,6 +94,21 @@ fn with_preset(preset: PresetSpec, segments: [usize; 2]) -> Project {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::antenna::bodies::tests::cuboid;
+    use crate::project::{BodiesSpec, BodyKind, BodySpec, LooseBody, WELD_MM};
+    use crate::task::Task;
+
+    #[test]
+    fn imported_bodies_are_compared_without_compensations() {
+        let spec = BodySpec { name: "plate".to_owned(), kind: BodyKind::Metal };
+        let surface = cuboid("plate", [-5.0, -5.0, 0.0], [5.0, 5.0, 1.0], [1, 1, 1]).surface;
+        let bodies = BodiesSpec::weld(&[LooseBody { spec, surface }], WELD_MM, &Task::default()).expect("one body");
+        let project = Project { bodies: Some(bodies), ..Project::default() };
+        let group = Group::of_project(&project, "a plate");
+        let names: Vec<&str> = group.variants.iter().map(|v| v.name).collect();
+        assert_eq!(names, ["flat", "raw"]);
+        assert!(group.variants.iter().all(|v| v.project.validate().is_ok()), "each can be solved");
+    }
 
     #[test]
     fn the_papers_antennas_can_be_posed_and_only_bends_have_a_reference() {
