@@ -5,7 +5,7 @@
 
 use super::ui_state::{RightTab, Tab};
 use egui::{Id, Rect, Vec2};
-use egui_tiles::{Container, LinearDir, Shares, Tile, TileId, Tiles, Tree};
+use egui_tiles::{Container, LinearDir, Shares, SimplificationOptions, Tile, TileId, Tiles, Tree};
 use serde::{Deserialize, Serialize};
 
 /// Widths of the sides at first, points: all inputs fit, and 1280 points leave the view the larger half.
@@ -111,6 +111,11 @@ impl Default for Layout {
     }
 }
 
+/// How a tree is kept simple: every pane has its tab.
+pub(super) fn tabs_for_all() -> SimplificationOptions {
+    SimplificationOptions { all_panes_must_have_tabs: true, ..SimplificationOptions::default() }
+}
+
 impl Layout {
     /// Whether each pane is there once: what another version kept may be of other panes.
     pub(super) fn is_sound(&self) -> bool {
@@ -189,6 +194,8 @@ impl Layout {
 
     /// Gives whatever lies around the view the size it had, and the view the rest of `size`; `gap` is between tiles.
     pub(super) fn keep_sizes(&mut self, mut size: Vec2, gap: f32) {
+        // What a drag has left empty takes no room.
+        self.tree.simplify(&tabs_for_all());
         let mut at = self.tree.root();
         while let Some(id) = at {
             let Some(inner) = self.child_with_view(id) else { return };
@@ -326,10 +333,10 @@ mod tests {
         let history = layout.tile(Pane::History).expect("it is there");
         let root = layout.tree.root().expect("a tree");
         layout.tree.move_tile_to_container(history, root, 1, false);
-        layout
-            .tree
-            .simplify(&egui_tiles::SimplificationOptions { all_panes_must_have_tabs: true, ..Default::default() });
         layout.keep_sizes(vec2(1280.0, 601.0), 1.0);
         assert_eq!(shares(&layout, Pane::History)[..2], [400.0, 200.0], "a third of the height");
+        layout.tree.move_tile_to_container(history, root, 0, false);
+        layout.keep_sizes(vec2(1280.0, 901.0), 1.0);
+        assert_eq!(shares(&layout, Pane::History)[..2], [300.0, 600.0], "put above it: what it leaves counts no more");
     }
 }

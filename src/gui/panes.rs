@@ -3,7 +3,7 @@
 use super::app::App;
 use super::command::Facts;
 use super::field::Refused;
-use super::layout::Pane;
+use super::layout::{Pane, tabs_for_all};
 use super::outbox::Outbox;
 use super::theme::Tokens;
 use super::ui_state::{RightTab, Tab};
@@ -176,7 +176,7 @@ impl Behavior<Pane> for Panes<'_> {
     }
 
     fn simplification_options(&self) -> SimplificationOptions {
-        SimplificationOptions { all_panes_must_have_tabs: true, ..SimplificationOptions::default() }
+        tabs_for_all()
     }
 
     fn tab_bar_height(&self, _: &Style) -> f32 {
