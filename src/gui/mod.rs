@@ -20,6 +20,7 @@
 mod app;
 mod bars;
 mod bodies_dialog;
+mod bodies_feed;
 mod body_rows;
 mod command;
 mod command_input;
@@ -31,7 +32,6 @@ mod edit_commands;
 mod edit_overlay;
 mod edit_ui;
 mod export_dialog;
-mod feed_pick;
 mod field;
 mod file_field;
 mod files;

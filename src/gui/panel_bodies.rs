@@ -1,11 +1,12 @@
 //! Imported bodies in the patch's place: what each is made of, and the ways to others.
 
+use super::bodies_feed::FeedUi;
 use super::body_rows::body_rows;
 use super::command::Command;
 use super::field::{Number, Refused, rows, section};
 use super::outbox::{Action, Outbox};
 use super::theme::Tokens;
-use super::ui_state::{FeedUi, UiState};
+use super::ui_state::UiState;
 use crate::project::{BodiesSpec, BodySpec, Edit, FeedSpec, Project};
 use crate::units::to_mm;
 use egui::{DragValue, RichText, Ui};
@@ -49,6 +50,7 @@ pub(super) fn ui(ui: &mut Ui, project: &Project, spec: &BodiesSpec, state: &mut 
 
 /// Where the bodies are fed, and where they are to be.
 fn feed(ui: &mut Ui, spec: &BodiesSpec, typed: &mut FeedUi, out: &mut Outbox) {
+    typed.follow(spec.feed);
     let now = match spec.feed {
         None => "None yet: the field solver needs one.".to_owned(),
         Some(FeedSpec { from_mm: [a, b, c], to_mm: [d, e, f], ohm }) => {
@@ -82,7 +84,8 @@ fn feed(ui: &mut Ui, spec: &BodiesSpec, typed: &mut FeedUi, out: &mut Outbox) {
             place_feed(spec, typed, out);
         }
         let tip = "Click the antenna where the feed goes; Esc gives up";
-        if ui.selectable_label(typed.picks.is_some(), "Pick in the view").on_hover_text(tip).clicked() {
+        let pick = egui::Button::new("Pick in the view").selected(typed.picks.is_some());
+        if ui.add(pick).on_hover_text(tip).clicked() {
             typed.picks = if typed.picks.is_some() { None } else { Some(0) };
         }
         if spec.feed.is_some() && ui.button("Remove feed").on_hover_text("Leave the bodies without one").clicked() {

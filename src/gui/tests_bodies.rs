@@ -140,6 +140,8 @@ fn clicks_near_the_edges_of_two_arms_place_the_feed_across_their_gap() {
     }
     settle(&mut window);
     let feed = project(&window).bodies.expect("bodies").feed.expect("placed");
+    let typed = &window.state().state.feed;
+    assert_eq!((typed.is_upright, typed.ends_mm), (false, [feed.from_mm, feed.to_mm]), "the fields say where");
     for (end, x) in [(feed.from_mm, -1.0), (feed.to_mm, 1.0)] {
         let far = DVec3::from_array(end).distance(DVec3::new(x, 0.3, 0.5));
         assert!(far < 0.05, "on the edge of the arm: {end:?}");

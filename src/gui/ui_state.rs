@@ -1,5 +1,6 @@
 //! What the user looks at and has selected: never part of a project, never undone, kept between runs.
 
+use super::bodies_feed::FeedUi;
 use super::edit_ui::EditUi;
 use super::layout::Layout;
 use super::play::Play;
@@ -110,24 +111,6 @@ impl HeatPart {
             Self::Substrate => "Substrate",
             Self::Ground => "Ground",
         }
-    }
-}
-
-/// The feed of bodies as it is typed, and why it was not placed.
-#[derive(Clone, Debug)]
-pub(super) struct FeedUi {
-    /// Whether its heights are found between metal above each other.
-    pub(super) is_upright: bool,
-    pub(super) ends_mm: [[f64; 3]; 2],
-    pub(super) ohm: f64,
-    pub(super) error: Option<String>,
-    /// The end that the next click in the view places.
-    pub(super) picks: Option<usize>,
-}
-
-impl Default for FeedUi {
-    fn default() -> Self {
-        Self { is_upright: true, ends_mm: [[0.0; 3]; 2], ohm: 50.0, error: None, picks: None }
     }
 }
 

@@ -5,11 +5,11 @@
 //! Shift) or draws an outline around vertices (Ctrl a lasso; after a command a box or a lasso). Operators that a command
 //! began are driven by the pointer until a click. Places are points from the top left of the view.
 
+use super::bodies_feed;
 use super::compare_session::mode_text;
 use super::draft::Draft;
 use super::edit_overlay;
 use super::edit_ui::Outline;
-use super::feed_pick;
 use super::heat::{Bar, Heated, OnShow, ticks};
 use super::mark_overlay;
 use super::mesh_scene::MeshScene;
@@ -182,7 +182,7 @@ impl Viewport {
         if session.project().bodies.is_none() || mesh.is_some() {
             state.feed.picks = None;
         }
-        feed_pick::hint(ui, rect, &mut state.feed);
+        bodies_feed::hint(ui, rect, &mut state.feed);
         self.overlay(ui, &response, &frame, state, &scene);
     }
 
@@ -356,7 +356,7 @@ impl Viewport {
             let of_bodies = bodies.zip(frame.on_show).zip(scene.surfaces.first());
             if let Some(((spec, shown), surface)) = of_bodies {
                 let flat = &shown.deformed.flat;
-                feed_pick::click((&view, at), surface, flat, spec, &mut state.feed, out);
+                bodies_feed::click((&view, at), surface, flat, spec, &mut state.feed, out);
             }
             return;
         }

@@ -1,12 +1,11 @@
-//! The feed of imported bodies placed by clicks on the antenna, flat or bent.
+//! The feed of imported bodies: as it is typed, and placed by clicks on the antenna, flat or bent.
 
 use super::outbox::Outbox;
 use super::overlay;
 use super::panel_bodies::place_feed;
 use super::scene::{CREASE_DEG, to_picture};
-use super::ui_state::FeedUi;
 use crate::geometry::{DVec3, Plc};
-use crate::project::BodiesSpec;
+use crate::project::{BodiesSpec, FeedSpec};
 use crate::render::pick::surface_at;
 use crate::render::scene::crease_edges;
 use crate::render::{Surface, Vec2, Vec3, View};
@@ -15,6 +14,40 @@ use egui::{Key, Modifiers, Rect, Ui};
 
 /// How close to an edge a click still means the edge, points.
 const SNAP: f32 = 8.0;
+
+/// The feed of bodies as it is typed, and why it was not placed.
+#[derive(Clone, Debug)]
+pub(super) struct FeedUi {
+    /// Whether its heights are found between metal above each other.
+    pub(super) is_upright: bool,
+    pub(super) ends_mm: [[f64; 3]; 2],
+    pub(super) ohm: f64,
+    pub(super) error: Option<String>,
+    /// The end that the next click in the view places.
+    pub(super) picks: Option<usize>,
+    /// The feed that was taken over last.
+    taken: Option<FeedSpec>,
+}
+
+impl FeedUi {
+    /// Takes over the numbers of a feed once it is another one.
+    pub(super) fn follow(&mut self, feed: Option<FeedSpec>) {
+        if self.taken == feed {
+            return;
+        }
+        self.taken = feed;
+        if let Some(FeedSpec { from_mm, to_mm, ohm }) = feed {
+            let is_upright = (0..2).all(|k| (from_mm[k] - to_mm[k]).abs() < 1e-9);
+            *self = Self { is_upright, ends_mm: [from_mm, to_mm], ohm, error: None, ..*self };
+        }
+    }
+}
+
+impl Default for FeedUi {
+    fn default() -> Self {
+        Self { is_upright: true, ends_mm: [[0.0; 3]; 2], ohm: 50.0, error: None, picks: None, taken: None }
+    }
+}
 
 /// Takes a click on the antenna for the next end of the feed; the last one places it.
 ///
