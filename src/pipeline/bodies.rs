@@ -1,9 +1,10 @@
 //! Imported bodies as a mesh: their split surface in a sphere of air, all of it filled at once, with the feed's line.
 //!
-//! Thin metal plates are sheets unless their true thickness is asked for. The feed is a line of edges across the gap: a narrow strip of facets within the
-//! region that it runs through keeps the line in the mesh, and carries no condition.
+//! Thin metal plates are sheets unless their true thickness is asked for. The feed is a line of edges across the gap: a
+//! narrow strip of facets within the region that it runs through keeps the line in the mesh, and carries no condition.
 
 use super::PipelineError;
+use super::bodies_edges::{Edges, edges};
 use super::mesh::{GRADING, MeshSettings, Meshed, N_WORST, Shape};
 use super::scene::Scene;
 use super::stages::{check_folds, guarded_split, splitting};
@@ -12,12 +13,9 @@ use crate::deform::{DeformError, SmoothMap, SplitSettings};
 use crate::geometry::{DVec3, FaceId, Plc, Region, RegionId, RegionRole, VertexId, intersect};
 use crate::project::{BodiesSpec, Project};
 use crate::task::Task;
-use crate::tet::{
-    FaceGroup, FaceRole, Metal, Sizes, SizingSettings, Surface, SurfaceFacet, fill, quality, remesh, sphere,
-};
+use crate::tet::{FaceGroup, FaceRole, SizingSettings, Surface, SurfaceFacet, fill, quality, remesh, sphere};
 use crate::tlm::LumpedPort;
 use crate::units::{C0, from_mm, to_mm};
-use std::collections::BTreeSet;
 use std::time::Instant;
 
 /// Number of the air among the mesh's regions; the bodies follow it.
@@ -30,108 +28,6 @@ const DIRECTIONS: usize = 12;
 const WIDTHS: [f64; 3] = [0.7, 0.3, 0.1];
 /// Room between the antenna and the outer sphere, wavelengths at the middle of the band.
 const ROOM: f64 = 0.5;
-
-/// What is resonant about bodies: of the two pieces of metal that are fed the smaller one, and what the gap is made of.
-///
-/// A piece is metal that hangs together, but for the largest body, which is the ground if there is one. Without a feed
-/// it is the largest piece but one, and the greatest permittivity.
-struct Resonator {
-    /// Greatest extent and the next one, m.
-    along: f64,
-    across: f64,
-    eps_r: f64,
-}
-
-fn resonator(bodies: &BodiesSpec) -> Resonator {
-    let plc = bodies.to_plc();
-    let gap = bodies.gap().ok().flatten();
-    let mut pieces = pieces(&plc);
-    let eps_r = match gap {
-        Some(gap) => {
-            pieces.retain(|(vertices, _)| gap.ends.iter().any(|v| vertices.contains(v)));
-            plc.regions[gap.region.index()].eps_r
-        }
-        None => {
-            if pieces.len() > 2 {
-                pieces.drain(..pieces.len() - 2);
-            }
-            plc.regions.iter().map(|r| r.eps_r).fold(1.0, f64::max)
-        }
-    };
-    let (lo, hi) = bodies.bounds();
-    let [_, across, along] = pieces.first().map_or_else(|| ascending(hi - lo), |p| p.1);
-    Resonator { along, across, eps_r }
-}
-
-fn ascending(extents: DVec3) -> [f64; 3] {
-    let mut extents = extents.to_array();
-    extents.sort_by(f64::total_cmp);
-    extents
-}
-
-/// The pieces of metal, the smallest first: their vertices, and their extents, ascending, m.
-fn pieces(plc: &Plc) -> Vec<(BTreeSet<VertexId>, [f64; 3])> {
-    let metal = plc.solids().filter(|(_, r)| r.role == RegionRole::Conductor);
-    let mut bodies: Vec<BTreeSet<VertexId>> =
-        metal.map(|(id, _)| plc.boundary_faces(id).into_iter().flatten().collect()).collect();
-    let extents = |vertices: &BTreeSet<VertexId>| {
-        let places = vertices.iter().map(|v| plc.vertices[v.index()]);
-        let (lo, hi) = places.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), p| (lo.min(p), hi.max(p)));
-        ascending(hi - lo)
-    };
-    bodies.sort_by(|a, b| extents(a)[2].total_cmp(&extents(b)[2]));
-    let largest = bodies.pop();
-    let mut pieces: Vec<BTreeSet<VertexId>> = Vec::new();
-    for mut body in bodies {
-        let (joined, apart): (Vec<_>, Vec<_>) = pieces.into_iter().partition(|piece| !piece.is_disjoint(&body));
-        body.extend(joined.into_iter().flatten());
-        pieces = apart;
-        pieces.push(body);
-    }
-    let mut pieces: Vec<_> = pieces.into_iter().chain(largest).map(|p| (extents(&p), p)).map(|(e, p)| (p, e)).collect();
-    pieces.sort_by(|a, b| a.1[2].total_cmp(&b.1[2]));
-    pieces
-}
-
-/// A band to begin with: around the half-wave resonance of the fed metal, Hz.
-pub(super) fn usual_band(bodies: &BodiesSpec) -> [f64; 2] {
-    let Resonator { along, eps_r, .. } = resonator(bodies);
-    let half_wave = C0 / (2.0 * along * eps_r.sqrt());
-    [half_wave * 2.0 / 3.0, half_wave * 4.0 / 3.0]
-}
-
-/// Greatest extent of a resonator over the one that its edges are measured by, at the most.
-const SLENDER: f64 = 2.5;
-/// Thickness of a metal plate that may be taken as a sheet over the extent that edges are measured by.
-const FOIL: f64 = 1.0 / 40.0;
-
-/// Lengths by which bodies are meshed, m.
-pub(super) struct Edges {
-    pub(super) sizes: Sizes,
-    /// Longest edges in the air.
-    pub(super) in_air: f64,
-    /// Greatest thickness of a metal plate that is taken as a sheet.
-    pub(super) thickest: f64,
-}
-
-pub(super) fn edges(bodies: &BodiesSpec, settings: MeshSettings, band: [f64; 2]) -> Edges {
-    let fineness = settings.density.fineness();
-    let in_air = C0 / band[1] / fineness.per_wavelength;
-    let Resonator { along, across, .. } = resonator(bodies);
-    let extent = across.max(along / SLENDER);
-    let size = |part: f64| (part * extent).min(in_air);
-    let thickest = if settings.metal == Metal::Sheet { FOIL * extent } else { 0.0 };
-    Edges { sizes: Sizes { inner: size(fineness.inner), at_metal: size(fineness.rim) }, in_air, thickest }
-}
-
-/// Smallest extent of a body that is no sheet, m.
-pub(super) fn thinnest(bodies: &BodiesSpec, edges: &Edges) -> f64 {
-    let plc = bodies.to_plc();
-    let kept: Vec<VertexId> = bodies.gap().ok().flatten().iter().flat_map(|gap| gap.ends).collect();
-    let is_sheet = with_sheets(&plc, edges.thickest, &kept).is_sheet;
-    let bodies = plc.solids().filter(|(id, _)| !is_sheet[id.index()]).map(|(id, _)| plc.boundary(id).bounds());
-    bodies.map(|(lo, hi)| (hi - lo).min_element()).fold(f64::INFINITY, f64::min)
-}
 
 /// Meshes imported bodies and the air around them.
 pub(super) fn mesh(

@@ -9,7 +9,7 @@
 //! Source of the quality factor: \[BAL16\] section 14.2 (bandwidth of a rectangular patch).
 
 use super::PipelineError;
-use super::bodies;
+use super::bodies_edges::{edges, thinnest};
 use super::mesh::{Density, Shape, longest_air_edge};
 use super::scene::Scene;
 use super::solve::{SolveSettings, StopRule};
@@ -108,7 +108,7 @@ fn estimate_bodies(bodies: &BodiesSpec, settings: &SolveSettings, speed: f64) ->
     bodies.feed.ok_or(PipelineError::NoFeed)?;
     let [lo, hi] = settings.band;
     let pulse = Pulse::new(lo, hi)?;
-    let edges = bodies::edges(bodies, settings.mesh, settings.band);
+    let edges = edges(bodies, settings.mesh, settings.band);
     let edge = f64::midpoint(edges.sizes.inner, edges.sizes.at_metal);
     let plc = bodies.to_plc();
     let area: f64 = (0..plc.facets.len()).map(|f| doubled_area_vector(plc.corners(f)).length() / 2.0).sum();
@@ -125,7 +125,7 @@ fn estimate_bodies(bodies: &BodiesSpec, settings: &SolveSettings, speed: f64) ->
         .sum();
     let triangles = area / (2.0 * 0.433 * edge * edge) + RIM_TRIANGLES * outlines / edges.sizes.at_metal;
     let n_tets = AIR_PER_TRIANGLE * triangles + FILLED * sphere;
-    let shortest = (STEP_OVER_RIM * edges.sizes.at_metal).min(STEP_OVER_SIDE * bodies::thinnest(bodies, &edges));
+    let shortest = (STEP_OVER_RIM * edges.sizes.at_metal).min(STEP_OVER_SIDE * thinnest(bodies, &edges));
     let dt = shortest / C0;
     let time = (pulse.end() + 10.0 / lo).min(settings.longest);
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive, and saturating")]

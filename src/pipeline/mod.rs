@@ -11,6 +11,7 @@
 //! [`SolveJob`](solve_job::SolveJob) solves the field in them.
 
 mod bodies;
+mod bodies_edges;
 pub mod compare_job;
 mod error;
 mod estimate;

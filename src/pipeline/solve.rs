@@ -51,7 +51,7 @@ impl SolveSettings {
     #[must_use]
     pub fn usual_band(project: &Project) -> [f64; 2] {
         if let Some(bodies) = &project.bodies {
-            return super::bodies::usual_band(bodies);
+            return super::bodies_edges::usual_band(bodies);
         }
         let params = project.antenna.to_params();
         let cavity = C0 / (2.0 * params.length * params.substrate.eps_r.sqrt());
