@@ -1,8 +1,10 @@
 //! The keys of the commands.
 
 use super::command::Command;
+use super::ui_state::Heat;
+use crate::project::Example;
 use crate::render::{Operator, StandardView};
-use egui::{Key, KeyboardShortcut, Modifiers, os::OperatingSystem};
+use egui::{Key, KeyboardShortcut, Modifiers, ThemePreference, os::OperatingSystem};
 
 /// A key alone.
 pub(super) fn plain(key: Key) -> KeyboardShortcut {
@@ -73,10 +75,45 @@ impl Command {
             Self::PreviousPanel => vec![shift(Key::F6)],
             Self::Palette => vec![command_shift(Key::P)],
             Self::Keys => vec![plain(Key::F1)],
-            Self::ResetLayout | Self::ClearRecent | Self::Welcome | Self::Example(_) => Vec::new(),
-            Self::ImportOutline | Self::ImportBodies => Vec::new(),
-            Self::SavePlot | Self::SavePicture | Self::Report | Self::Compare | Self::ShowGhost => Vec::new(),
-            Self::Paint(_) | Self::ResetAll | Self::CompensateNot | Self::ShowLog | Self::Theme(_) => Vec::new(),
+            Self::ImportOutline => vec![command_shift(Key::O)],
+            Self::ImportBodies => vec![command_shift(Key::I)],
+            Self::SavePlot => vec![command(Key::P)],
+            Self::SavePicture => vec![plain(Key::F12)],
+            Self::Report => vec![command_shift(Key::H)],
+            Self::ClearRecent => vec![command_shift(Key::Delete)],
+            Self::ResetAll => vec![shift(Key::Delete)],
+            Self::CompensateNot => vec![command_shift(Key::Enter)],
+            Self::Compare => vec![command(Key::K)],
+            Self::ShowGhost => vec![plain(Key::E)],
+            Self::Paint(heat) => vec![KeyboardShortcut::new(Modifiers::ALT, heat_key(heat))],
+            Self::ShowLog => vec![command(Key::L)],
+            Self::ResetLayout => vec![shift(Key::F8)],
+            Self::Theme(ThemePreference::System) => vec![shift(Key::F2)],
+            Self::Theme(ThemePreference::Light) => vec![shift(Key::F3)],
+            Self::Theme(ThemePreference::Dark) => vec![shift(Key::F4)],
+            Self::Welcome => vec![shift(Key::F1)],
+            Self::Example(example) => vec![command(example_key(example))],
         }
+    }
+}
+
+fn heat_key(heat: Heat) -> Key {
+    match heat {
+        Heat::None => Key::Num0,
+        Heat::Area => Key::Num1,
+        Heat::MaxStrain => Key::Num2,
+        Heat::MinStrain => Key::Num3,
+        Heat::Thickness => Key::Num4,
+        Heat::Distance => Key::Num5,
+    }
+}
+
+fn example_key(example: Example) -> Key {
+    match example {
+        Example::Flat => Key::F1,
+        Example::BentH => Key::F2,
+        Example::BentE => Key::F3,
+        Example::Saddle => Key::F4,
+        Example::Twist => Key::F5,
     }
 }

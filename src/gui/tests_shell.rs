@@ -37,6 +37,7 @@ fn every_key_runs_its_command_and_no_other() {
     let ctx = egui::Context::default();
     for &command in Command::ALL {
         assert!(command.is_enabled(&everything()), "{command:?} can be used");
+        assert!(!command.keys(ctx.os()).is_empty(), "{command:?} has a key");
         for shortcut in command.keys(ctx.os()) {
             let (key, modifiers) = (shortcut.logical_key, shortcut.modifiers);
             let event = Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers };
