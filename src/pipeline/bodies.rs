@@ -10,6 +10,7 @@ use super::scene::Scene;
 use super::stages::{check_folds, guarded_split, splitting};
 use crate::antenna::bodies::{Gap, WithSheets, with_sheets};
 use crate::deform::{DeformError, SmoothMap, SplitSettings};
+use crate::geometry::bvh::Aabb;
 use crate::geometry::{DVec3, FaceId, Plc, Region, RegionId, RegionRole, VertexId, intersect};
 use crate::project::{BodiesSpec, Project};
 use crate::task::Task;
@@ -115,8 +116,7 @@ impl How {
 
     /// Adds the outer sphere; returns the number of vertices that the surface then has.
     fn add_sphere(&self, surface: &mut Surface) -> usize {
-        let (lo, hi) =
-            surface.vertices.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), &p| (lo.min(p), hi.max(p)));
+        let Aabb { lo, hi } = Aabb::around(&surface.vertices);
         let center = lo.midpoint(hi);
         let reach = surface.vertices.iter().map(|p| p.distance(center)).fold(0.0, f64::max);
         let wavelength = 2.0 * C0 / (self.band[0] + self.band[1]);

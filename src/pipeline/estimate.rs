@@ -37,6 +37,21 @@ pub struct Estimate {
     pub seconds: f64,
 }
 
+impl Estimate {
+    /// * `dt`: time step, s; `speed`: cells times steps per second.
+    fn new(n_tets: f64, dt: f64, n_steps: f64, speed: f64) -> Self {
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive, and saturating")]
+        let count = |x: f64| x as usize;
+        Self {
+            n_tets: count(n_tets),
+            dt,
+            n_steps: count(n_steps),
+            bytes: count(BYTES_PER_TET * n_tets),
+            seconds: n_tets * (n_steps / speed.max(1.0) + SECONDS_PER_TET),
+        }
+    }
+}
+
 /// Triangles along a unit of outline, in edges of the rim.
 const RIM_TRIANGLES: f64 = 3.75;
 /// Tetrahedra of air that grow from a triangle of the antenna's footprint, both sides together.
@@ -92,15 +107,7 @@ pub fn estimate(
     let layer = rim.min(params.height / fineness.layers as f64);
     let dt = (STEP_OVER_LAYER * layer).min(STEP_OVER_PIN * pin) / C0;
     let time = duration(&params, settings, &pulse);
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive, and saturating")]
-    let count = |x: f64| x as usize;
-    Ok(Estimate {
-        n_tets: count(n_tets),
-        dt,
-        n_steps: count(time / dt),
-        bytes: count(BYTES_PER_TET * n_tets),
-        seconds: n_tets * (time / dt / speed.max(1.0) + SECONDS_PER_TET),
-    })
+    Ok(Estimate::new(n_tets, dt, time / dt, speed))
 }
 
 /// A rough guess for imported bodies, flat or bent: cells within a factor of two, time of three.
@@ -128,15 +135,7 @@ fn estimate_bodies(bodies: &BodiesSpec, settings: &SolveSettings, speed: f64) ->
     let shortest = (STEP_OVER_RIM * edges.sizes.at_metal).min(STEP_OVER_SIDE * thinnest(bodies, &edges));
     let dt = shortest / C0;
     let time = (pulse.end() + 10.0 / lo).min(settings.longest);
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive, and saturating")]
-    let count = |x: f64| x as usize;
-    Ok(Estimate {
-        n_tets: count(n_tets),
-        dt,
-        n_steps: count(time / dt),
-        bytes: count(BYTES_PER_TET * n_tets),
-        seconds: n_tets * (time / dt / speed.max(1.0) + SECONDS_PER_TET),
-    })
+    Ok(Estimate::new(n_tets, dt, time / dt, speed))
 }
 
 /// Greatest curvature of the antenna's sheets, 1/m, and the radius of the sphere around it, m.

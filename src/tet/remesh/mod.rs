@@ -11,6 +11,8 @@ mod near;
 mod part;
 mod rim;
 
+use super::store::edge_key;
+use crate::geometry::tri_mesh::doubled_area_vector;
 use crate::geometry::{DVec3, Facet, Plc, RegionId, RegionRole, VertexId};
 use near::Near;
 use part::Part;
@@ -52,17 +54,9 @@ pub fn remesh(plc: &Plc, keep: &[VertexId], sizes: Sizes, tolerance: f64) -> Res
     Ok(compact(new))
 }
 
-fn key(a: VertexId, b: VertexId) -> [VertexId; 2] {
-    [a.min(b), a.max(b)]
-}
-
 fn sides(f: &Facet) -> [[VertexId; 2]; 3] {
     let [a, b, c] = f.vertices;
     [[a, b], [b, c], [c, a]]
-}
-
-fn doubled_area([a, b, c]: [DVec3; 3]) -> DVec3 {
-    (b - a).cross(c - a)
 }
 
 /// Which facets lie in one plane.
@@ -79,7 +73,7 @@ impl Flats {
     fn new(plc: &Plc, tolerance: f64) -> Self {
         let mut at: HashMap<[VertexId; 2], Vec<usize>> = HashMap::new();
         for (f, facet) in plc.facets.iter().enumerate() {
-            sides(facet).iter().for_each(|[a, b]| at.entry(key(*a, *b)).or_default().push(f));
+            sides(facet).iter().for_each(|[a, b]| at.entry(edge_key(*a, *b)).or_default().push(f));
         }
         let mut flats = Self { part_of: vec![usize::MAX; plc.facets.len()], normals: Vec::new(), tolerance };
         for first in 0..plc.facets.len() {
@@ -94,20 +88,20 @@ impl Flats {
     fn grow(&mut self, plc: &Plc, first: usize, at: &HashMap<[VertexId; 2], Vec<usize>>) {
         let part = self.normals.len();
         let corners = plc.corners(first);
-        let normal = doubled_area(corners).normalize_or_zero();
+        let normal = doubled_area_vector(corners).normalize_or_zero();
         self.normals.push(normal);
         let between = |f: usize| (plc.facets[f].back, plc.facets[f].front);
         let fits = |f: usize| {
             let own = plc.corners(f);
             own.iter().all(|p| (*p - corners[0]).dot(normal).abs() <= self.tolerance)
-                && doubled_area(own).normalize_or_zero().dot(normal) > SAME_NORMAL
+                && doubled_area_vector(own).normalize_or_zero().dot(normal) > SAME_NORMAL
                 && between(f) == between(first)
         };
         let mut stack = vec![first];
         self.part_of[first] = part;
         while let Some(f) = stack.pop() {
             for [a, b] in sides(&plc.facets[f]) {
-                let [p, q] = at[&key(a, b)][..] else { continue };
+                let [p, q] = at[&edge_key(a, b)][..] else { continue };
                 let other = if p == f { q } else { p };
                 if self.part_of[other] == usize::MAX && fits(other) {
                     self.part_of[other] = part;
@@ -135,7 +129,7 @@ impl Flats {
     fn by_area(&self, plc: &Plc) -> Vec<Vec<usize>> {
         let mut members = vec![(0.0, Vec::new()); self.n_parts()];
         for (f, &part) in self.part_of.iter().enumerate() {
-            members[part].0 += doubled_area(plc.corners(f)).length();
+            members[part].0 += doubled_area_vector(plc.corners(f)).length();
             members[part].1.push(f);
         }
         members.sort_by(|p, q| p.0.total_cmp(&q.0));

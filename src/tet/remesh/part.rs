@@ -2,8 +2,10 @@
 
 use super::near::Near;
 use super::rim::Rim;
-use super::{doubled_area, key, sides};
+use super::sides;
+use crate::geometry::tri_mesh::doubled_area_vector;
 use crate::geometry::{DVec2, DVec3, Facet, Plc, VertexId};
+use crate::tet::store::edge_key;
 use spade::{AngleLimit, ConstrainedDelaunayTriangulation, Point2, RefinementParameters, Triangulation};
 use std::collections::{BTreeSet, HashMap, HashSet};
 
@@ -34,7 +36,7 @@ struct Plane {
 
 impl Plane {
     fn new(corners: [DVec3; 3]) -> Self {
-        let normal = doubled_area(corners).normalize_or_zero();
+        let normal = doubled_area_vector(corners).normalize_or_zero();
         let (u, v) = axes(normal);
         Self { origin: corners[0], normal, u, v }
     }
@@ -156,7 +158,7 @@ fn within(triangles: &[[VertexId; 3]], rim: &[[VertexId; 2]]) -> Vec<[VertexId; 
     let turns = |t: [VertexId; 3]| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]];
     let left: HashMap<[VertexId; 2], usize> =
         triangles.iter().enumerate().flat_map(|(k, &t)| turns(t).map(|e| (e, k))).collect();
-    let walls: HashSet<[VertexId; 2]> = rim.iter().map(|[a, b]| key(*a, *b)).collect();
+    let walls: HashSet<[VertexId; 2]> = rim.iter().map(|[a, b]| edge_key(*a, *b)).collect();
     let mut stack: Vec<usize> = rim.iter().filter_map(|e| left.get(e).copied()).collect();
     let mut is_within = vec![false; triangles.len()];
     while let Some(k) = stack.pop() {
@@ -164,7 +166,7 @@ fn within(triangles: &[[VertexId; 3]], rim: &[[VertexId; 2]]) -> Vec<[VertexId; 
             continue;
         }
         for [a, b] in turns(triangles[k]) {
-            if !walls.contains(&key(a, b)) {
+            if !walls.contains(&edge_key(a, b)) {
                 stack.extend(left.get(&[b, a]));
             }
         }

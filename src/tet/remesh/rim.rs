@@ -1,8 +1,10 @@
 //! The rims of flat parts, divided so that rims which lie above one another get their points above one another.
 
 use super::near::Near;
-use super::{Flats, Sizes, key};
+use super::{Flats, Sizes, sides};
+use crate::geometry::tri_mesh::doubled_area_vector;
 use crate::geometry::{DVec3, Plc, VertexId};
+use crate::tet::store::edge_key;
 use std::collections::{BTreeSet, HashMap};
 
 /// Longest edge of a rim over the width of the narrowest part at it, which is the side of a thin plate or layer: longer
@@ -80,7 +82,7 @@ impl Rim {
 
     /// The pieces of an edge in its direction; none if it is no edge between parts.
     pub(super) fn pieces(&self, [from, to]: [VertexId; 2]) -> Vec<[VertexId; 2]> {
-        let Some(between) = self.on_edge.get(&key(from, to)) else { return Vec::new() };
+        let Some(between) = self.on_edge.get(&edge_key(from, to)) else { return Vec::new() };
         let mut along = vec![from];
         if from < to {
             along.extend(between);
@@ -97,8 +99,8 @@ fn bare_edges(plc: &Plc, flats: &Flats, sizes: Sizes) -> Vec<Bare> {
     let mut at: HashMap<[VertexId; 2], Vec<usize>> = HashMap::new();
     let mut area = vec![0.0; flats.n_parts()];
     for (f, facet) in plc.facets.iter().enumerate() {
-        area[flats.part_of[f]] += super::doubled_area(plc.corners(f)).length() / 2.0;
-        super::sides(facet).iter().for_each(|[a, b]| at.entry(key(*a, *b)).or_default().push(flats.part_of[f]));
+        area[flats.part_of[f]] += doubled_area_vector(plc.corners(f)).length() / 2.0;
+        sides(facet).iter().for_each(|[a, b]| at.entry(edge_key(*a, *b)).or_default().push(flats.part_of[f]));
     }
     at.retain(|_, parts| !matches!(parts[..], [p, q] if p == q));
     let mut edges: Vec<Bare> = at.into_iter().map(|(ends, parts)| Bare { ends, parts, wanted: sizes.inner }).collect();
